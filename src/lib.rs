@@ -17,15 +17,15 @@
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
 //! | [`critical`] | the critical velocity below which stick-slip survives | |
 //! | [`sweep`] | sweep files, plans, the engine that computes maps | `sweep` |
-//! | [`explore`] | what is asked at a point or in a plane, as plain data | `explore` |
-//! | [`store`] | maps on disk: their files | `store` |
-//! | [`maps`] | from a plan to its map; whether a map is true | `store` |
+//! | [`explore`] | requests about a point or a plane, as plain data | `explore` |
+//! | [`store`] | map and trace files | `store` |
+//! | [`maps`] | from a plan to its map; checks and display of maps | `store` |
 //! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //! | [`letter`] | every claim of the letter, computed again | `cli` |
 //!
-//! `cli`, the default, has everything. With `default-features = false` the rest stands alone,
-//! without libhdf5 and without a C compiler.
+//! `cli`, the default, includes all features. With `default-features = false` the first four
+//! modules remain, without libhdf5 and without a C compiler.
 //!
 //! # Example
 //!

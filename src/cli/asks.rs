@@ -1,10 +1,10 @@
-//! What commands ask of a point, and so which flags they can use.
+//! The needs of commands that ask about a point, which determine their flags.
 
-/// What a command asks of a point, and so which flags it can use.
+/// The needs of a command that asks about a point.
 pub(super) trait Asks {
     /// Whether it needs a whole friction law.
     const LAW: bool;
-    /// Whether it looks for the delay.
+    /// Whether it searches for the delay, so that none is given.
     const SEARCHES_DELAY: bool;
 }
 
@@ -17,7 +17,7 @@ impl Asks for OfSliding {
     const SEARCHES_DELAY: bool = false;
 }
 
-/// Sliding, at a delay that is looked for.
+/// Sliding, at a delay that the command searches for.
 #[derive(Debug)]
 pub(super) struct AtAnyDelay;
 
@@ -26,7 +26,7 @@ impl Asks for AtAnyDelay {
     const SEARCHES_DELAY: bool = true;
 }
 
-/// Stick and slip, which a friction law says.
+/// Stick and slip, which needs a friction law.
 #[derive(Debug)]
 pub(super) struct OfStickSlip;
 

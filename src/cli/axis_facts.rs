@@ -15,7 +15,7 @@ pub(super) struct AxisFacts {
 }
 
 impl AxisFacts {
-    /// Of an axis with these values, at least one.
+    /// The facts of an axis with these values, at least one.
     pub(super) fn of(parameter: &Quantity, values: &[f64]) -> Self {
         Self {
             name: parameter.name().to_owned(),
@@ -25,7 +25,7 @@ impl AxisFacts {
         }
     }
 
-    /// "tau   400 points, 0 to 12 s", the unit with a space before it or empty.
+    /// "tau   400 points, 0 to 12 s"; `unit` has a space before it, or is empty.
     pub(super) fn text(&self, unit: &str) -> String {
         let (name, points) = (&self.name, grouped(self.points));
         let (first, last) = (self.first, self.last);

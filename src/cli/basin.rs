@@ -24,7 +24,7 @@ use super::setting::SettingArgs;
 use super::signals::Signals;
 use super::text_output::{To, is_csv};
 
-/// Starts where none are asked for.
+/// Default number of starts.
 const STARTS: u32 = 4096;
 
 #[derive(Debug, clap::Args)]
@@ -87,13 +87,13 @@ enum OverName {
     Phase,
 }
 
-/// The number of a `--starts` flag.
+/// Reads the number of a `--starts` flag.
 fn parse_starts(text: &str) -> Result<u32, String> {
     let starts = text.parse().map_err(|_| "expected a whole number");
     Basin::check_starts(starts?)
 }
 
-/// What is asked.
+/// The question: a setting and its starts.
 struct Question {
     setting: Setting,
     units: Units,
@@ -101,7 +101,7 @@ struct Question {
     simulation: Simulation,
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("basin").or::<BasinShare>()
 }
@@ -135,7 +135,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// What is asked, from a map, a file or flags.
+    /// Reads the question from a map, a file or flags.
     fn read(&self) -> Result<Question, Failure> {
         let by_flags = self.parameters.any_but(&[]);
         let mut basin = Basin {
@@ -183,7 +183,7 @@ impl Args {
         })
     }
 
-    /// What flags say of the starts.
+    /// Sets what the flags say about the starts.
     fn put_starts(&self, basin: &mut Basin, setting: &Setting) -> Result<(), Failure> {
         if let Some(over) = self.over {
             basin.over = match over {
@@ -215,7 +215,7 @@ impl Args {
         Ok(())
     }
 
-    /// Where starts are written, if they are.
+    /// Where starts are written, if requested.
     fn output(&self) -> Result<Option<To<'_>>, Failure> {
         match self.output.as_deref() {
             Some(path) if is_csv(path) => Ok(Some(To::File(path))),
@@ -236,7 +236,7 @@ impl Args {
     }
 }
 
-/// The ends of a range: those that flags give, else the defaults.
+/// The ends of a range: from the flags, else the defaults.
 fn range(
     of: Parameter,
     ends: &[(&str, Option<f64>)],
@@ -311,13 +311,13 @@ fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), 
     }
 }
 
-/// A number with six digits at most.
+/// A number with at most six digits.
 fn six(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     format!("{}", Shown(rounded))
 }
 
-/// Which question is answered.
+/// The kind of starts, in words.
 fn over(share: &BasinShare) -> &'static str {
     match share.over {
         "state" => "states of the block, control on from t = 0",
@@ -325,7 +325,7 @@ fn over(share: &BasinShare) -> &'static str {
     }
 }
 
-/// The share that slides, in words.
+/// The share that ends in sliding, in words.
 fn sliding(share: &BasinShare) -> String {
     let (Some(least), Some(error), Some(most), Some([low, high])) = (
         share.basin_share,

@@ -1,4 +1,4 @@
-//! The facts of the case of one motion: `plan` prints them before it is simulated, `info` of its
+//! The facts of the case of one motion: `plan` prints them before it is simulated, `info` from its
 //! trace.
 
 use serde::Serialize;
@@ -89,12 +89,12 @@ impl CaseFacts {
         }
     }
 
-    /// End of the samples, where the file gives one.
+    /// End of the samples, if the file gives one.
     pub(super) const fn until(&self) -> Option<f64> {
         self.until
     }
 
-    /// A value with the unit of a name.
+    /// A value with the unit of the quantity `name`.
     pub(super) fn with_unit(&self, name: &str, value: f64) -> String {
         let of = self.units.iter().find(|(of, _)| *of == name);
         match of.filter(|(_, unit)| unit != "1") {

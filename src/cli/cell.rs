@@ -1,4 +1,4 @@
-//! A cell of a map in the place of flags and case files: `--map MAP.h5 --at AXIS=VALUE`.
+//! A cell of a map instead of flags or a case file: `--map MAP.h5 --at AXIS=VALUE`.
 
 use std::cell::OnceCell;
 use std::fmt;
@@ -28,19 +28,19 @@ pub(super) struct CellArgs {
     /// With --map: the cell at the value nearest to this; once for each axis of several values
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at, requires = "map")]
     at: Vec<At>,
-    /// What the map says of itself, once it was read.
+    /// The plan of the map, once it is read.
     #[arg(skip)]
     read: OnceCell<Plan>,
 }
 
-/// Where on an axis, as flags say it.
+/// A place on an axis, as given by a flag.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct At {
     name: String,
     pub value: f64,
 }
 
-/// A name and a value; which axes there are only a map says.
+/// Reads a name and a value. Whether the axis exists depends on the map.
 pub(super) fn parse_at(text: &str) -> Result<At, String> {
     let (name, value) = text
         .split_once('=')
@@ -53,7 +53,7 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
 }
 
 impl At {
-    /// The number of its axis among `axes`, those of a map.
+    /// The number of the named axis among `axes`, those of a map.
     pub(super) fn axis(&self, axes: &[&Quantity]) -> Result<usize, Failure> {
         let names = || axes.iter().map(|axis| axis.name());
         let place = names().position(|name| name == self.name);
@@ -75,12 +75,12 @@ impl fmt::Display for At {
 }
 
 impl CellArgs {
-    /// The flags `--at`, each after a space.
+    /// The flags `--at`, each preceded by a space.
     pub(super) fn words(&self) -> String {
         self.at.iter().map(|at| format!(" --at {at}")).collect()
     }
 
-    /// The plan of the map, read once; none where no map is given.
+    /// The plan of the map, read once; none without a map.
     fn plan(&self) -> Result<Option<&Plan>, Failure> {
         let Some(path) = &self.map else {
             return Ok(None);
@@ -91,7 +91,7 @@ impl CellArgs {
         Ok(self.read.get())
     }
 
-    /// The setting of the cell, where the map is one of a system from a file.
+    /// The setting of the cell, if the map is of a system from a file.
     pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
         let Some(plan) = self.plan()? else {
             return Ok(None);
@@ -102,7 +102,7 @@ impl CellArgs {
         }
     }
 
-    /// What can be asked at the cell, and its setting; none where no map is given.
+    /// The requests about the cell, and its setting; none without a map.
     fn texts(&self) -> Result<Option<(CellTexts, Setting)>, Failure> {
         let Some(plan) = self.plan()? else {
             return Ok(None);
@@ -112,7 +112,7 @@ impl CellArgs {
         Ok(Some((CellTexts::of(plan, &index), setting)))
     }
 
-    /// Where the cell is along every axis. Says which cell it is.
+    /// The index of the cell along every axis. It also reports the cell.
     fn index(&self, plan: &Plan) -> Result<Vec<usize>, Failure> {
         self.check_axes(plan)?;
         let mut index = Vec::new();
@@ -143,8 +143,8 @@ impl CellArgs {
             .map_err(|error| Failure::in_file(error, "the cell", &text))
     }
 
-    /// Of which starts the shares of the map are, and how these are followed; none where no map is
-    /// given or it has no shares.
+    /// The starts of the map's shares, and how they are followed; none without a map, or if it has
+    /// no shares.
     pub(super) fn basin(&self) -> Result<Option<(Basin, Simulation)>, Failure> {
         let Some(Plan { spec, .. }) = self.plan()? else {
             return Ok(None);
@@ -161,13 +161,13 @@ impl CellArgs {
         text.transpose()
     }
 
-    /// Values are given on axes alone.
+    /// Checks that values are given only for axes.
     fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
         let axes: Vec<_> = plan.spec.axes.iter().map(|axis| &axis.parameter).collect();
         self.at.iter().try_for_each(|at| at.axis(&axes).map(drop))
     }
 
-    /// Where on an axis: at the value nearest to the one given.
+    /// The place on an axis of the value nearest to the given one.
     fn place(&self, axis: &Axis) -> Result<usize, Failure> {
         let name = axis.parameter.name();
         let given = self.at.iter().filter(|at| at.name == name);
@@ -187,7 +187,7 @@ impl CellArgs {
     }
 }
 
-/// The place on an axis of the value nearest to `value`, which the axis reaches.
+/// The place on an axis of the value nearest to `value`, which must be within the axis.
 pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usize, Failure> {
     nearest(values, value).map_err(|[low, high]| {
         let message = format!("--at {}={value} is outside the axis", of.name());
@@ -196,7 +196,7 @@ pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usiz
     })
 }
 
-/// Refuses other flags of the setting where a cell of a map or a file gives it.
+/// Refuses other flags of the setting if a cell of a map or a file gives it.
 pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),
@@ -220,7 +220,7 @@ enum Needed {
 }
 
 impl Needed {
-    /// Its name, where a setting lacks it.
+    /// Its name, if a setting lacks it.
     fn lacking(self, setting: &Setting) -> Option<&'static str> {
         let lacks = |parameter| setting.get(parameter).is_nan();
         match self {
@@ -231,7 +231,7 @@ impl Needed {
     }
 }
 
-/// A cell lacks what a command needs.
+/// The failure of a cell that lacks what a command needs.
 fn without(setting: &Setting, needed: &[Needed]) -> Failure {
     if setting.system().is_some() {
         return Failure::bad_input_with_help(
@@ -241,7 +241,7 @@ fn without(setting: &Setting, needed: &[Needed]) -> Failure {
     }
     let lacking = needed.iter().filter_map(|needed| needed.lacking(setting));
     match lacking.collect::<Vec<_>>()[..] {
-        // A cell of the limit of a short delay has all of its own.
+        // A cell of the limit of a short delay lacks nothing, but is of another kind.
         [] => Failure::bad_input_with_help(
             "this map is one of the limit of a short delay",
             "its cells are asked for by slipmap vc --protocol limit --gamma G --mu-ratio R",
@@ -253,7 +253,7 @@ fn without(setting: &Setting, needed: &[Needed]) -> Failure {
     }
 }
 
-/// The plan of a map, or of its tiles where it is not there yet.
+/// The plan of a map or, if it does not exist yet, of its tiles.
 fn plan_of(path: &Path) -> Result<Plan, Failure> {
     if !path.exists()
         && let Some(survey) = Survey::of(path)?

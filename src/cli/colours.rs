@@ -14,7 +14,7 @@ pub(super) enum Colours {
 }
 
 impl Colours {
-    /// What the arguments ask for, before they are understood: an error in them is told in the
+    /// The choice in the arguments, found before they are parsed, so that errors in them have the
     /// same colours.
     pub(super) fn asked() -> Self {
         let args: Vec<_> = std::env::args_os().skip(1).collect();
@@ -34,19 +34,19 @@ impl Colours {
         }
     }
 
-    /// Errors and warnings follow it.
+    /// Applies the choice to errors and warnings.
     pub(super) fn apply(self) {
         if self == Self::Auto {
             return;
         }
         let colour = self == Self::Always;
-        // Refused where there is a hook already, of which there is none.
+        // This fails only if a hook is already set, and none is.
         let _ = miette::set_hook(Box::new(move |_| {
             Box::new(miette::MietteHandlerOpts::new().color(colour).build())
         }));
     }
 
-    /// Whether what is written for people on a terminal has colours.
+    /// Whether text for people on a terminal has colours.
     pub(super) fn of_terminal(self) -> bool {
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         match self {

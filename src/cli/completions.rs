@@ -1,4 +1,4 @@
-//! `slipmap completions`: what a shell needs to complete commands and flags.
+//! `slipmap completions`: a script with which a shell completes commands and flags.
 
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};
@@ -14,7 +14,7 @@ pub(super) struct Args {
     shell: Shell,
 }
 
-/// Prints the script that the shell reads.
+/// Prints the script for the shell.
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let mut script = Vec::new();
     generate(args.shell, &mut Cli::command(), "slipmap", &mut script);

@@ -1,4 +1,4 @@
-//! `slipmap export`: what a map or a trace holds, as text.
+//! `slipmap export`: the contents of a map or a trace, as text.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ use super::say;
 use super::signals::Signals;
 use super::text_output::To;
 
-/// What a signal leaves.
+/// The message after a signal.
 const NOT_EXPORTED: &str = "not everything is exported";
 
 #[derive(Debug, clap::Args)]
@@ -184,7 +184,7 @@ fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
     Ok(held)
 }
 
-/// The fields that are asked for, in this order; all of them where none is.
+/// The requested fields, in this order; all fields without a request.
 fn fields(map: &MapFile, args: &Args) -> Result<Vec<Field>, Failure> {
     if args.field.is_empty() {
         return Ok(map.fields().to_vec());
@@ -193,7 +193,7 @@ fn fields(map: &MapFile, args: &Args) -> Result<Vec<Field>, Failure> {
     once(args)?.map(field).collect()
 }
 
-/// The quantities that are asked for, in this order; all of them where none is.
+/// The requested quantities, in this order; all quantities without a request.
 fn quantities(args: &Args) -> Result<Vec<&'static Quantity>, Failure> {
     if args.field.is_empty() {
         return Ok(QUANTITIES.iter().collect());
@@ -212,7 +212,7 @@ fn quantities(args: &Args) -> Result<Vec<&'static Quantity>, Failure> {
     once(args)?.map(quantity).collect()
 }
 
-/// The names of the fields, none of them twice.
+/// The names of the requested fields, checked to be different.
 fn once(args: &Args) -> Result<impl Iterator<Item = &String>, Failure> {
     let names = &args.field;
     let twice = (1..names.len()).find(|&i| names[..i].contains(&names[i]));

@@ -1,4 +1,4 @@
-//! How a command fails: what the user reads, and the exit code.
+//! How a command fails: the message for the user, and the exit code.
 
 use std::process::ExitCode;
 
@@ -10,17 +10,17 @@ use slipmap::sweep::SpecError;
 use super::kind::Kind;
 use super::say::{self, shortened, visible, visible_line};
 
-/// Why a command did not do what it was asked for.
+/// Why a command did not complete.
 pub(super) enum Failure {
     /// Exit code 1: it could not be done.
     Failed(Report),
-    /// Exit code 2: the input does not make sense.
+    /// Exit code 2: the input is invalid.
     BadInput(Report),
-    /// Exit code 0: whoever read the output has read enough.
+    /// Exit code 0: the reader of the output has gone.
     ReaderGone,
     /// Exit code 129, 130 or 143: a signal.
     Interrupted {
-        /// What was left behind.
+        /// What the command leaves behind.
         message: String,
         /// The exit code.
         code: u8,
@@ -28,12 +28,12 @@ pub(super) enum Failure {
 }
 
 impl Failure {
-    /// What could not be done, in words.
+    /// A failure, in words.
     pub(super) fn failed(message: impl Into<String>) -> Self {
         Self::Failed(Report::new(shown(message)))
     }
 
-    /// What failed, with advice on what to do.
+    /// A failure with advice.
     pub(super) fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Failed(Report::new(shown(message).with_help(visible(&help.into()))))
     }
@@ -48,7 +48,7 @@ impl Failure {
         Self::BadInput(Report::new(shown(message).with_help(visible(&help.into()))))
     }
 
-    /// A flag with a value that its parameter does not take.
+    /// A flag with a value that its parameter does not allow.
     pub(super) fn out_of_range(flag: &str, error: &ModelError) -> Self {
         Self::bad_input(format!(
             "{flag} {} is outside its range: {}",
@@ -68,7 +68,7 @@ impl Failure {
             diagnostic.message = format!("{name}: {}", diagnostic.message);
             return Self::BadInput(Report::new(diagnostic));
         };
-        // Ends of lines are not what is odd in a text from Windows.
+        // Line ends of a text from Windows are not spelled out.
         let shown = |text: &str| visible(&text.replace("\r\n", "\n"));
         let place = |at: usize| text.get(..at).map_or(0, |before| shown(before).len());
         let span = place(span.start)..place(span.end);

@@ -1,4 +1,4 @@
-//! `slipmap info`: what a map or a trace holds.
+//! `slipmap info`: the contents of a map or a trace.
 
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -21,7 +21,7 @@ use super::open::open;
 use super::say::{Rows, visible};
 use super::signals::Signals;
 
-/// What a signal leaves.
+/// The message after a signal.
 const NOT_TOLD: &str = "not everything is told";
 
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("info")
         .or::<Facts>()
@@ -76,10 +76,10 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     facts.tell_best(&mut rows)
 }
 
-/// The text of the file that a map or trace was made from.
+/// Prints the text of the file from which a map or trace was made.
 pub(super) fn tell_text(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    // Elsewhere than on a terminal it is the file, byte by byte.
+    // If not on a terminal, the file is printed byte by byte.
     match out.is_terminal() {
         true => write!(out, "{}", visible(text))?,
         false => write!(out, "{text}")?,
@@ -187,7 +187,7 @@ impl Facts {
         Ok(())
     }
 
-    /// The unit of a name, after a space; nothing where it has none.
+    /// The unit of the quantity `name`, after a space; empty where it has none.
     fn unit(&self, name: &str) -> String {
         let of = self.units.iter().find(|(of, _)| of == name);
         of.map_or_else(String::new, |(_, unit)| unit_behind(unit))
@@ -264,7 +264,7 @@ impl FieldFacts {
     }
 }
 
-/// Names of what a file says of where it comes from, and the attributes that hold it.
+/// Names of the facts about the origin of a file, with the attributes that hold them.
 const ORIGIN: [(&str, &str); 7] = [
     ("title", root::TITLE),
     ("made by", root::SOURCE),
@@ -275,7 +275,7 @@ const ORIGIN: [(&str, &str); 7] = [
     ("friction", root::FRICTION_LAW),
 ];
 
-/// What a file says of where it comes from, by name, from its texts.
+/// The facts about the origin of a file, by name, from its texts.
 pub(super) fn origin(text: impl Fn(&str) -> Option<String>) -> Vec<(&'static str, String)> {
     let told = ORIGIN.into_iter().filter_map(|(name, attribute)| {
         let text = text(attribute).filter(|text| !text.is_empty())?;
@@ -284,13 +284,13 @@ pub(super) fn origin(text: impl Fn(&str) -> Option<String>) -> Vec<(&'static str
     told.collect()
 }
 
-/// What is said of the start of a map's motions that its sweep does not give, and of many starts.
+/// A remark on the start of a map's motions, if its sweep gives none, or on many starts.
 fn said_of_starts(map: &MapFile) -> Option<(&'static str, String)> {
     let said = map.sweep().ok()?.said_of_starts()?;
     Some(("start", said))
 }
 
-/// Units of parameters are those of the sweep.
+/// Units by name; parameters have those of the sweep.
 fn units(map: &MapFile) -> Vec<(String, String)> {
     let of_sweep = map.units();
     let axes = map.axes().iter().map(|axis| axis.parameter.clone());
@@ -302,7 +302,7 @@ fn units(map: &MapFile) -> Vec<(String, String)> {
         .iter()
         .map(|&field| (field.name().to_owned(), map.field_unit(field)));
     let mut units: Vec<_> = of_parameters.chain(fields).collect();
-    // That of the best settings, too.
+    // Also the unit of the best settings.
     let time = Field::RelaxationTime.name();
     if map.best_plane().is_some() && units.iter().all(|(name, _)| name != time) {
         units.push((time.to_owned(), of_sweep.time()));
@@ -314,7 +314,7 @@ fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {
     let mut fields = Vec::new();
     for (name, bytes, bytes_on_disk) in map.sizes()? {
         let mut facts = FieldFacts {
-            // Older maps have other names for some.
+            // Older maps use former names of some fields.
             name: Field::from_name(name).map_or(name, Field::name),
             bytes,
             bytes_on_disk,

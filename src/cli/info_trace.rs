@@ -1,4 +1,4 @@
-//! `slipmap info` of a trace: the case, what the trace holds, what became of the motion.
+//! `slipmap info` for a trace: its case, its contents, and the outcome of the motion.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use super::json::{self, Inputs, as_object};
 use super::motion_text;
 use super::say::Rows;
 
-/// As JSON, or as text for people.
+/// The form of the output.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Told {
     /// Rows for people.
@@ -78,7 +78,7 @@ struct Numbers {
 
 impl From<&Summary> for Numbers {
     fn from(summary: &Summary) -> Self {
-        // Not −0.
+        // Avoids −0.
         let told = |value: f64| value.is_finite().then_some(value + 0.0);
         Self {
             decided: told(summary.decided),

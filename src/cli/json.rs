@@ -1,5 +1,5 @@
-//! What commands print with `--json`: one object, with what was asked, and the schemas of those
-//! objects.
+//! The output of commands with `--json`: one object that includes the inputs, and the schemas of
+//! these objects.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -16,11 +16,11 @@ use utoipa::openapi::{RefOr, Schema};
 
 use super::failure::Failure;
 
-/// Version of the keys of the JSON output of all commands: larger where a key is gone or means
-/// something else; new keys may come without that. 2: `last_release` counts from switch-on.
+/// Version of the keys of the JSON output of all commands. It increases when a key is removed or
+/// changes its meaning, but not for new keys. 2: `last_release` counts from switch-on.
 const SCHEMA_VERSION: u32 = 2;
 
-/// An answer with the version of its keys and what was asked.
+/// An answer with the version of its keys and the inputs.
 #[derive(Serialize)]
 struct Answer<'a, T> {
     schema_version: u32,
@@ -29,14 +29,14 @@ struct Answer<'a, T> {
     value: &'a T,
 }
 
-/// What was asked, with defaults filled in: enough to ask the same again. Keys are those of flags,
-/// with `_` in the place of `-`.
+/// The inputs with defaults filled in: enough to repeat the request. Keys are those of flags, with
+/// `_` instead of `-`.
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(transparent)]
 pub(super) struct Inputs(Map<String, Value>);
 
 impl Inputs {
-    /// The `wanted` parameters of a point, its friction law and its units.
+    /// The `wanted` parameters of a setting, its friction law and its units.
     pub(super) fn of_setting(
         setting: &Setting,
         units: &Units,
@@ -58,9 +58,9 @@ impl Inputs {
         inputs.and("units", &units.force_length_time)
     }
 
-    /// The same with one input more.
+    /// Adds an input.
     pub(super) fn and(mut self, name: &str, value: impl Serialize) -> Self {
-        // Numbers, texts and lists of them are always written.
+        // Serialising numbers, texts and lists of them cannot fail.
         let value = serde_json::to_value(value).unwrap_or_default();
         self.0.insert(name.to_owned(), value);
         self
@@ -79,7 +79,7 @@ pub(super) fn print(inputs: &Inputs, value: &impl Serialize) -> Result<(), Failu
     Ok(writeln!(std::io::stdout(), "{text}")?)
 }
 
-/// Pairs of a name and a value as an object, in their order; names of several words are joined.
+/// Serialises pairs of a name and a value as an object, in order. Words of a name are joined.
 pub(super) fn as_object<S: Serializer, T: Serialize>(
     pairs: &[(impl AsRef<str>, T)],
     to: S,
@@ -91,7 +91,7 @@ pub(super) fn as_object<S: Serializer, T: Serialize>(
     )
 }
 
-/// The JSON Schema (2020-12) of what a command prints, one of several kinds of answers.
+/// The JSON Schema (2020-12) of the output of a command: one of several kinds of answers.
 pub(super) struct AnswerSchema {
     command: &'static str,
     answers: Vec<Value>,
@@ -107,7 +107,7 @@ impl AnswerSchema {
         }
     }
 
-    /// An answer may be of this type.
+    /// Adds a type that an answer may have.
     pub(super) fn or<T: ToSchema>(mut self) -> Self {
         let mut parts = vec![(T::name().into_owned(), T::schema())];
         T::schemas(&mut parts);

@@ -1,4 +1,4 @@
-//! What kind of file of slipmap's a name leads to: a command that does not take it says which ones
+//! The kind of a file of slipmap. A command that does not take this kind names the commands that
 //! do.
 
 use std::fs::File;
@@ -10,7 +10,7 @@ use slipmap::sweep::input::case_file::{TextKind, kind_of_text};
 
 /// The first bytes of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Longer texts are none of slipmap's, about.
+/// Approximate size beyond which a text is not one of slipmap's.
 const MOST_BYTES: u64 = 1 << 20;
 
 /// A kind of file.
@@ -22,9 +22,9 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind of the file at `path`; none where it is not a file of slipmap.
+    /// The kind of the file at `path`; none for files that are not slipmap's.
     pub(super) fn of(path: &Path) -> Option<Self> {
-        // A pipe would be waited for.
+        // Opening a pipe would block.
         path.metadata()
             .is_ok_and(|file| file.is_file())
             .then_some(())?;
@@ -44,7 +44,8 @@ impl Kind {
         kind_of_text(std::str::from_utf8(&bytes).ok()?).map(Self::Text)
     }
 
-    /// That the file at `path` is of this kind, not the `wanted` one; and what takes it.
+    /// A message that the file at `path` has this kind and not the `wanted` one, and which commands
+    /// take it.
     pub(super) fn not(self, path: &Path, wanted: &str) -> (String, String) {
         let path = path.display();
         let (name, takers) = match self {

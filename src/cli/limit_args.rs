@@ -1,4 +1,4 @@
-//! The flags of a point of the limit of a short delay.
+//! The flags for a point of the limit of a short delay.
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use slipmap::sweep::Parameter;
@@ -15,12 +15,12 @@ impl LimitArgs {
         matches!(group, Group::Limit)
     }
 
-    /// The value given to a parameter.
+    /// The given value of a parameter.
     pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0.get(parameter)
     }
 
-    /// The first parameter that is given.
+    /// The first given parameter.
     pub(super) fn any_given(&self) -> Option<Parameter> {
         Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
     }

@@ -1,4 +1,4 @@
-//! `slipmap man`: manual pages, made of what `--help` says.
+//! `slipmap man`: manual pages, made from the texts of `--help`.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ fn page(command: Command) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&page).into_owned())
 }
 
-/// Writes a page: it is there whole, or what was there before.
+/// Writes a page completely, or leaves the earlier file in place.
 fn write(path: &Path, page: &str) -> Result<(), Failure> {
     let output = Output::claim(path)?;
     std::fs::write(output.part(), page).map_err(|source| StoreError::Io {
@@ -38,7 +38,7 @@ fn write(path: &Path, page: &str) -> Result<(), Failure> {
     Ok(output.commit()?)
 }
 
-/// Prints a page, or writes all.
+/// Prints a page, or writes all pages.
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let mut root = Cli::command();
     root.build();

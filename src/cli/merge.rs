@@ -1,4 +1,4 @@
-//! `slipmap merge`: the map of shards that were computed apart.
+//! `slipmap merge`: assembles the map of shards that were computed separately.
 
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         true => Missing::Leave,
         false => Missing::Refuse,
     };
-    // What was computed elsewhere belongs to whoever brought it.
+    // Folders from elsewhere belong to the user.
     let keep = args.partial || !args.folders.is_empty();
     let asked = Merge {
         folders: &folders,
@@ -107,8 +107,8 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
     Ok(present.into_iter().map(|(_, path)| path).collect())
 }
 
-/// An error, unless the shards are gone because their map is complete: a merge that is run again
-/// has nothing to do, with --fresh too.
+/// An error, unless the shards are gone because their map is complete. A merge that is run again
+/// then has nothing to do, even with --fresh.
 fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
     if maker::is_complete(target, None)? {
         drop(shards::remove_root(&args.map));

@@ -1,56 +1,55 @@
 //! The command line: one file per subcommand, each thin.
 //!
-//! - `asks`: what commands ask of a point, and so which flags they can use
-//! - `axis_facts`: what is told of an axis, of a sweep and of a map alike
-//! - `basin`: `basin`: which starts, what is told of them
+//! - `asks`: the needs of commands that ask about a point, which determine their flags
+//! - `axis_facts`: the facts of an axis, for a sweep and for a map
+//! - `basin`: `slipmap basin`: its starts and its output
 //! - `best`: `slipmap best`
-//! - `best_answer`: what `slipmap best` prints with `--json`
+//! - `best_answer`: the output of `slipmap best` with `--json`
 //! - `best_system`: `slipmap best --system`
-//! - `best_text`: what `slipmap best` prints for people
-//! - `case_facts`: what is told of a case, before it is simulated and of its trace
-//! - `cell`: a cell of a map in the place of flags and case files
+//! - `best_text`: the output of `slipmap best` for people
+//! - `case_facts`: the facts of a case, before it is simulated and from its trace
+//! - `cell`: a cell of a map instead of flags or a case file
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
-//! - `export`: which table is exported, and what of it
+//! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
 //! - `info`: `slipmap info`
-//! - `info_trace`: `slipmap info` of a trace
-//! - `json`: what commands print with `--json`
-//! - `kind`: what kind of file of slipmap's a name leads to, for commands that take another
-//! - `limit_args`: the flags of a point of the limit of a short delay
+//! - `info_trace`: `slipmap info` for a trace
+//! - `json`: the output of commands with `--json`
+//! - `kind`: the kind of a file of slipmap, for commands that take another kind
+//! - `limit_args`: the flags for a point of the limit of a short delay
 //! - `man`: `slipmap man`
 //! - `margins`: `slipmap margins`
 //! - `merge`: `slipmap merge`
-//! - `motion_text`: what became of a motion, in words and numbers for people
+//! - `motion_text`: the outcome of a motion, in words and numbers for people
 //! - `open`: opens a map for a command that reads it
-//! - `open_files`: as many open files as the system allows: a merge holds one of every shard
-//! - `output`: what all commands that write a file share
+//! - `open_files`: raises the limit of open files: a merge has one of every shard open
+//! - `output`: common to all commands that write a file
 //! - `parameter_values`: the values that flags give to parameters
-//! - `parameters`: the flags that give a point of parameter space, the same words as in sweep files
+//! - `parameters`: the flags for a point of parameter space, with the same words as sweep files
 //! - `plan`: `slipmap plan`
-//! - `plan_case`: `slipmap plan` of a case file
+//! - `plan_case`: `slipmap plan` for a case file
 //! - `plot`: `slipmap plot`
 //! - `point`: `slipmap point`
-//! - `point_args`: a point at which sliding is asked for
+//! - `point_args`: the arguments for a point of sliding
 //! - `point_system`: `slipmap point --system`
 //! - `read_map`: `slipmap read-map`
-//! - `recommended`: what `slipmap best` recommends
+//! - `recommended`: the setting that `slipmap best` recommends
 //! - `reference`: `slipmap reference`
-//! - `reproduce`: `slipmap reproduce`: which files it may write, what it tells
+//! - `reproduce`: `slipmap reproduce`: the files that it may write, and its output
 //! - `run`: `slipmap run`
-//! - `say`: telling the user things
+//! - `say`: messages to the user
 //! - `schema`: `slipmap schema`
 //! - `serve`: `slipmap serve`
-//! - `setting`: a setting from a file in the place of flags, and files of settings
+//! - `setting`: a setting from a file instead of flags, and files of settings
 //! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
-//! - `signals`: signals that stop a command in order, also while it reads or draws
+//! - `signals`: signals that stop a command in order, even while it reads or draws
 //! - `simulate`: `slipmap simulate`
 //! - `status`: `slipmap status`
-//! - `sweep_file`: reading sweep files, case files and tables of friction, with errors that point
+//! - `sweep_file`: reads sweep files, case files and tables of friction, with errors that point
 //!   into them
-//! - `system_args`: a system from a file, or one that is part of the program, in the place of the
-//!   letter's
-//! - `text_output`: text on standard output, or in a file that is whole or not there
+//! - `system_args`: a system from a file, or a shipped one, instead of the letter's
+//! - `text_output`: text on standard output, or in a file that is written completely or not at all
 //! - `vc`: `slipmap vc`
 //! - `verify`: `slipmap verify`
 
@@ -181,8 +180,8 @@ enum Command {
     Reference(reference::Args),
 }
 
-/// Prints help, or what is wrong with the arguments. Names among these may hold control
-/// characters, which are shown and not sent to the terminal.
+/// Prints help, or what is wrong with the arguments. File names in them may contain control
+/// characters, which are spelled out and not sent to the terminal.
 fn say_usage(error: &clap::Error) -> ExitCode {
     let odd = |arg: std::ffi::OsString| {
         let arg = arg.to_string_lossy().into_owned();
@@ -207,8 +206,8 @@ pub(crate) fn main() -> ExitCode {
         }
         Err(error) => return say_usage(&error),
     };
-    // Caught and not looked at: a limit on file sizes then fails the write instead of ending the
-    // process. Where it cannot be caught, such a limit ends the process, no more.
+    // This signal is caught and ignored: exceeding a limit on file sizes then makes the write fail
+    // instead of ending the process. If it cannot be caught, the process ends.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     let result = match command {
         Command::Run(args) => run::main(&args),

@@ -1,4 +1,4 @@
-//! What became of a motion, in words and numbers for people.
+//! The outcome of a motion, in words and numbers for people.
 
 use std::io::Write;
 
@@ -10,10 +10,10 @@ use slipmap::sweep::{CaseSpec, Field, Trace};
 
 use super::output::tell_dimensionless;
 
-/// Events printed for people, the last ones; the JSON output and the trace have them all.
+/// Number of events printed for people, the last ones; the JSON output and the trace have all.
 const EVENTS_SHOWN: usize = 12;
 
-/// Writes what became of a motion, its numbers and its last events.
+/// Writes the outcome of a motion, its numbers and its last events.
 pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
     let summary = &trace.summary;
     writeln!(out, "{}", verdict(summary, spec))?;
@@ -44,7 +44,7 @@ pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std
     Ok(())
 }
 
-/// The numbers of a motion that there are, by name, with their units.
+/// The finite numbers of a motion, by name, with their units.
 pub(super) fn numbers(summary: &Summary, units: &Units) -> Vec<(&'static str, String)> {
     let finite = summary.numbers().into_iter();
     let finite = finite.filter(|(_, value)| value.is_finite());
@@ -66,7 +66,8 @@ fn digits(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         size @ 1e-4..1e6 => {
-            // Of the rounded number: 9.9999999999 has two digits before the point.
+            // Digits are counted after rounding: 9.9999999999 becomes a number with two digits
+            // before the point.
             let rounded = format!("{size:.9e}");
             let exponent = rounded
                 .split('e')
@@ -79,7 +80,7 @@ fn digits(value: f64) -> String {
     }
 }
 
-/// What became of the motion, in words.
+/// The outcome of the motion, in words.
 fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
     match summary.outcome {
         Outcome::Sliding => "the block comes to slide continuously".into(),

@@ -1,4 +1,4 @@
-//! Opens a map for a command that reads it: the complete map, or the part that is computed so far.
+//! Opens a map for a command that reads it: the complete map, or the part computed so far.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -16,8 +16,8 @@ use super::output::provenance;
 use super::say;
 use super::signals::Signals;
 
-/// The map at `path`. Where there is none yet, what its tiles hold, put together in a file of its
-/// own that is gone afterwards.
+/// Opens the map at `path`. If it does not exist yet, a map is assembled from its tiles, in a
+/// temporary file that is removed at once.
 ///
 /// A signal ends it, with `message`.
 pub(super) fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapFile, Failure> {
@@ -39,7 +39,7 @@ pub(super) fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapF
     so_far.map_err(|failure| signals.or_stopped(failure, message))
 }
 
-/// The field of that name that a map holds.
+/// The field of a map with this name.
 pub(super) fn held_field(map: &MapFile, name: &str) -> Result<Field, Failure> {
     let field = Field::from_name(name).filter(|field| map.fields().contains(field));
     field.ok_or_else(|| {
@@ -55,7 +55,7 @@ pub(super) fn held_field(map: &MapFile, name: &str) -> Result<Field, Failure> {
     })
 }
 
-/// What the folders of shards hold, as a map.
+/// A map of what the folders of shards contain.
 fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile, Failure> {
     let (manifest, plan) = shards::plan(folders)?;
     let mut source = Vec::new();
@@ -68,12 +68,12 @@ fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile
     let assembled = assemble(&plan, output, &provenance, &mut source, missing, stop)?;
     tell_partial(path, assembled.cells_missing, plan.cells());
     let map = MapFile::open(&file);
-    // The open file outlives its name.
+    // The file stays open after its name is removed.
     std::fs::remove_file(&file)?;
     Ok(map?)
 }
 
-/// Says how much of a map is there.
+/// Reports how much of a map is computed.
 pub(super) fn tell_partial(path: &Path, missing: u64, cells: u64) {
     let (path, done, cells) = (
         path.display(),

@@ -1,8 +1,7 @@
 //! The limit of open files of this process.
 
-/// Raises the limit that a user gives to programs to the one that the system gives to users: a
-/// merge holds one file of every shard. Where the system refuses, the limit stays, and opening one
-/// more says so.
+/// Raises the soft limit of open files to the hard limit: a merge has one file of every shard open.
+/// If the system refuses, the limit stays, and opening too many files fails.
 pub(super) fn as_many_as_allowed() {
     #[cfg(unix)]
     {
@@ -14,10 +13,10 @@ pub(super) fn as_many_as_allowed() {
         unsafe {
             if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut limit) == 0 {
                 limit.rlim_cur = limit.rlim_max;
-                // macOS refuses more than this, whatever it tells of users.
+                // macOS refuses more than this, whatever hard limit it reports.
                 #[cfg(target_os = "macos")]
                 {
-                    // OPEN_MAX of its headers, which libc does not have.
+                    // OPEN_MAX from its headers, which libc lacks.
                     limit.rlim_cur = limit.rlim_cur.min(10_240);
                 }
                 libc::setrlimit(libc::RLIMIT_NOFILE, &raw const limit);

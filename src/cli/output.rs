@@ -1,4 +1,4 @@
-//! What all commands that write a file share: its name, and who made it.
+//! Common to all commands that write a file: its name, and its provenance.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,11 @@ use super::say;
 use super::sweep_file::STANDARD_INPUT;
 use super::text_output::STANDARD_OUTPUT;
 
-/// Endings of the names of maps and traces: HDF5, and netCDF, whose readers read the same file.
+/// Extensions of maps and traces: those of HDF5, and of netCDF, whose readers read the same file.
 const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
 
-/// Refuses a name, given by `flag` to a map or a trace (its `kind`), whose ending is not one of
-/// HDF5. A name without an ending is refused too: no program would know what it is.
+/// Refuses a name, given by `flag` for a map or a trace (its `kind`), without an extension of HDF5.
+/// A name without any extension is refused too: no program would recognise it.
 pub(super) fn check_name(flag: &str, path: &Path, kind: &str) -> Result<(), Failure> {
     let shown = format!("{flag}{}", path.display());
     let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
@@ -50,7 +50,7 @@ pub(super) fn check_name(flag: &str, path: &Path, kind: &str) -> Result<(), Fail
     Err(Failure::bad_input_with_help(message, help))
 }
 
-/// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map
+/// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind` is map
 /// or trace.
 pub(super) fn output_path(
     given: Option<&Path>,
@@ -74,7 +74,7 @@ pub(super) fn output_path(
     Ok(path)
 }
 
-/// Refuses a name, given by `flag` to a picture, that is not one of a picture, or is the name of
+/// Refuses a name, given by `flag` for a picture, that does not suit a picture, or is the name of
 /// `other`, a map or a trace.
 pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Result<(), Failure> {
     let shown = name.display();
@@ -91,7 +91,7 @@ pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Re
     Ok(())
 }
 
-/// This program, now, running `command` on `input`.
+/// The provenance of a file made now by `command` from `input`.
 pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
     let now = humantime::format_rfc3339_seconds(representable(SystemTime::now()));
     Provenance {
@@ -101,7 +101,7 @@ pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
     }
 }
 
-/// Says, once, that numbers have no units; what they are stands behind each where they have.
+/// Reports once that numbers have no units. If they have, each is followed by its unit.
 pub(super) fn tell_dimensionless(out: &mut impl Write, units: &Units) -> std::io::Result<()> {
     match units.dimensionless() {
         true => writeln!(out, "  {:<16} none: dimensionless", "units"),
@@ -109,14 +109,14 @@ pub(super) fn tell_dimensionless(out: &mut impl Write, units: &Units) -> std::io
     }
 }
 
-/// Says, once, where a delay is given that nothing acts on.
+/// Warns once if a delay is given that has no effect.
 pub(super) fn warn_of_idle_delay(idle: bool) {
     if idle {
         say::remark("warning: tau has no effect: both gains, alpha_v and alpha_n, are 0");
     }
 }
 
-/// Says what besides cells a map holds, on standard error.
+/// Reports on standard error what a map has besides cells.
 pub(super) fn tell_assembled(assembled: &Assembled) {
     if assembled.curves > 0 {
         let (curves, corners) = (grouped(assembled.curves), grouped(assembled.corners));

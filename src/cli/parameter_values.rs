@@ -4,12 +4,12 @@ use clap::{Arg, ArgMatches};
 use slipmap::sweep::Parameter;
 use slipmap::sweep::input::parameter::Group;
 
-/// The values that flags give to parameters, each by the flag of its row.
+/// The values that flags give to parameters; each parameter has a flag in its row.
 #[derive(Debug, Clone)]
 pub(super) struct Values(Box<[Option<f64>; Parameter::ALL.len()]>);
 
 impl Values {
-    /// The flags of the parameters that are `wanted`.
+    /// The flags of the parameters in `wanted` groups.
     pub(super) fn flags(wanted: impl Fn(Group) -> bool) -> impl Iterator<Item = Arg> {
         let wanted = Parameter::ALL
             .into_iter()
@@ -39,7 +39,7 @@ impl Values {
     }
 }
 
-/// A number of a flag; its range is that of its parameter.
+/// Reads the number of a flag; its range is checked with its parameter.
 fn parse_number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();
     number.ok_or_else(|| "expected a number, such as -0.3 or 1e-2".to_owned())

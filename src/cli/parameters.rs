@@ -1,4 +1,4 @@
-//! The flags that give a point of parameter space, the same words as in sweep files.
+//! The flags for a point of parameter space, with the same words as sweep files.
 
 use std::marker::PhantomData;
 use std::path::PathBuf;
@@ -43,7 +43,7 @@ fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(formulas.chain([table]))
 }
 
-/// Why a law with a state is refused where motions are followed.
+/// The failure for a law with a state where motions are followed.
 fn no_motions() -> Failure {
     let law = Formula::RateAndState.name();
     Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
@@ -58,7 +58,7 @@ pub(super) struct ParameterArgs<A: Asks = OfSliding> {
 }
 
 impl<A: Asks> ParameterArgs<A> {
-    /// Whether a parameter is one without a friction law as well.
+    /// Whether parameters of this group also exist without a friction law.
     const fn without_law(group: Group) -> bool {
         matches!(group, Group::Model | Group::Sliding)
     }
@@ -67,8 +67,8 @@ impl<A: Asks> ParameterArgs<A> {
         matches!(group, Group::Pull | Group::Law)
     }
 
-    /// What would always be refused is not offered; where it is given all the same, the answer
-    /// says why.
+    /// Hides flags that would always be refused from the help. If one is given nevertheless, the
+    /// error says why.
     fn offered(arg: Arg) -> Arg {
         let parameter = Parameter::from_name(arg.get_id().as_str());
         let of_slope = |p: Parameter| p.group() == Group::Sliding;
@@ -110,7 +110,7 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     }
 }
 
-/// The flag that gives a parameter; the name of one that has none.
+/// The flag of a parameter; the name of a parameter without one.
 pub(super) fn flag(parameter: Parameter) -> String {
     match parameter.long_flag() {
         Some(flag) => format!("--{flag}"),
@@ -123,7 +123,7 @@ impl<A: Asks> ParameterArgs<A> {
         self.values.get(parameter)
     }
 
-    /// The friction law that the flags name, with the points of its file.
+    /// The friction law of the flags, with the points of its file.
     fn law(&self) -> Result<Option<LawKind>, Failure> {
         let help =
             "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
@@ -142,12 +142,12 @@ impl<A: Asks> ParameterArgs<A> {
                 "--table has a meaning with --friction table only",
                 help,
             )),
-            // The flag takes the names of laws alone.
+            // The flag accepts only the names of laws.
             (name, None) => Ok(name.and_then(Formula::from_name).map(LawKind::Formula)),
         }
     }
 
-    /// The setting that the flags describe, with a delay only where control acts.
+    /// The setting of the flags. It needs a delay only if control acts.
     pub(super) fn setting(&self) -> Result<Setting, Failure> {
         self.check_law()?;
         let setting = self.setting_with(self.unneeded_delay(), None, &[], "")?;
@@ -161,7 +161,7 @@ impl<A: Asks> ParameterArgs<A> {
         law == Some(Formula::RateAndState)
     }
 
-    /// The delay, where both gains are 0.
+    /// A value for the delay where it is not needed, because both gains are 0.
     fn unneeded_delay(&self) -> Option<(Parameter, f64)> {
         match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
             [None | Some(0.0), None | Some(0.0)] => Some((Parameter::Tau, 0.0)),
@@ -169,8 +169,8 @@ impl<A: Asks> ParameterArgs<A> {
         }
     }
 
-    /// Refuses a missing friction law where one is needed, and flags that have no meaning beside
-    /// one.
+    /// Refuses a missing friction law where one is needed, and flags without a meaning beside a
+    /// law.
     fn check_law(&self) -> Result<(), Failure> {
         let help = "for example: --friction weakening --mu0 0.5 --v-s 0.5";
         let mut of_slope = Parameter::ALL.into_iter();
@@ -190,8 +190,8 @@ impl<A: Asks> ParameterArgs<A> {
         }
     }
 
-    /// The setting of a critical velocity: a friction law, and a delay only where control acts. A
-    /// v0 is left aside, so that all commands take the flags of one rig.
+    /// The setting for a critical velocity: it needs a friction law, and a delay only if control
+    /// acts. A v0 is ignored, so that the same flags work for all commands.
     pub(super) fn setting_without_v0(&self) -> Result<Setting, Failure> {
         self.check_law()?;
         let mut setting = self.setting_with(self.unneeded_delay(), Some(Parameter::V0), &[], "")?;
@@ -203,7 +203,7 @@ impl<A: Asks> ParameterArgs<A> {
         Ok(setting)
     }
 
-    /// The setting of motions: a friction law and v0, and a delay only where control acts.
+    /// The setting for motions: it needs a friction law and v0, and a delay only if control acts.
     pub(super) fn setting_of_motions(&self) -> Result<Setting, Failure> {
         match self.law.friction {
             Some(_) if self.has_state() => Err(no_motions()),
@@ -220,7 +220,7 @@ impl<A: Asks> ParameterArgs<A> {
         self.law.units.clone().unwrap_or_default()
     }
 
-    /// Whether any parameter is given but one of these.
+    /// Whether any flag is given besides those of `these` parameters.
     pub(super) fn any_but(&self, these: &[Parameter]) -> bool {
         let given = |p: Parameter| !these.contains(&p) && self.given(p).is_some();
         let LawArgs {
@@ -232,7 +232,8 @@ impl<A: Asks> ParameterArgs<A> {
         flags || Parameter::ALL.into_iter().any(given)
     }
 
-    /// The setting of the flags but for the parameters `searched`, refused with `help`.
+    /// The setting of the flags without the parameters `searched`; if one of these is given, the
+    /// error has this `help`.
     pub(super) fn setting_but(
         &self,
         searched: &[Parameter],
@@ -241,8 +242,8 @@ impl<A: Asks> ParameterArgs<A> {
         self.setting_with(None, None, searched, help)
     }
 
-    /// The setting that the flags describe, as [`ParameterArgs::setting_but`] reads it, with a
-    /// value for a parameter that need not be given, and another one that may be left out.
+    /// The setting of the flags, as [`ParameterArgs::setting_but`] reads it. `unneeded` has a value
+    /// for a parameter that need not be given; the parameter `left_out` may be missing.
     fn setting_with(
         &self,
         unneeded: Option<(Parameter, f64)>,
@@ -281,7 +282,7 @@ impl<A: Asks> ParameterArgs<A> {
         Ok(setting)
     }
 
-    /// What the model refuses, by the name of the flag that gave it.
+    /// An error of the model, with the name of the flag that caused it.
     pub(super) fn refused(&self, error: &ModelError) -> Failure {
         let named = |p: &Parameter| p.name() == error.parameter;
         let Some(parameter) = Parameter::ALL.into_iter().find(named) else {

@@ -1,5 +1,5 @@
-//! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces; what
-//! `simulate` would do with a case.
+//! `slipmap plan`: the cost of a sweep, from a timed sample of its own pieces; and what `simulate`
+//! would do with a case.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,14 +26,13 @@ use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_w
 use super::say::Rows;
 use super::sweep_file::{Described, read_sweep_or_case};
 
-/// A sample ends after so long, once it has this many pieces; or after the longest time, whatever
-/// it has.
+/// A sample ends after this time once it has enough pieces, and after the longest time in any case.
 const SAMPLE: Duration = Duration::from_millis(500);
 const ENOUGH: usize = 12;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
-/// Bytes of a map besides its numbers, as measured on maps: the whole, each dataset of cells and
-/// axis, each chunk in an index, and the group of curves.
+/// Measured bytes of a map besides its numbers: of the file, of each dataset of cells or axis, of
+/// each chunk in an index, and of the group of curves.
 const WITHOUT_CELLS: f64 = 8e3;
 const OF_A_DATASET: f64 = 1.2e3;
 const OF_A_CHUNK: f64 = 40.0;
@@ -56,7 +55,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("plan")
         .or::<Facts>()
@@ -194,14 +193,14 @@ impl Facts {
     }
 }
 
-/// Times of some pieces of one kind, and the number of all pieces of that kind.
+/// Measured values of some pieces of one kind, and the number of all pieces of that kind.
 struct Sample {
     values: Vec<f64>,
     of: usize,
 }
 
 impl Sample {
-    /// Measures pieces spread over all `of`.
+    /// Measures pieces spread over all `of` pieces.
     fn take(
         of: usize,
         mut measured: impl FnMut(usize) -> Result<f64, Failure>,
@@ -227,7 +226,8 @@ impl Sample {
         self.mean() * self.of as f64
     }
 
-    /// Twice the standard error of the total; that of one piece is its value.
+    /// Twice the standard error of the total. For a single piece, its value stands for the
+    /// deviation.
     fn spread(&self) -> f64 {
         let (n, mean) = (self.values.len() as f64, self.mean());
         if self.values.len() == self.of {
@@ -243,7 +243,7 @@ impl Sample {
     }
 }
 
-/// What pieces cost on one thread: seconds, and bytes of tiles.
+/// The cost of pieces on one thread: seconds and bytes.
 struct Costs {
     tiles: Sample,
     curves: Sample,
@@ -296,7 +296,7 @@ impl Costs {
         })
     }
 
-    /// Bytes of the map, about: its cells, curves, and what describes them.
+    /// Approximate bytes of the map: its cells, its curves, and their description.
     fn bytes_on_disk(&self, plan: &Plan) -> u64 {
         let datasets = (plan.spec.fields.len() + plan.spec.axes.len() + 1) as f64;
         let chunks = plan.tiles.len() as f64 * (plan.spec.fields.len() + 1) as f64;
@@ -308,7 +308,7 @@ impl Costs {
         (described + curves + self.bytes.total()) as u64
     }
 
-    /// Seconds of all pieces on one thread, and how far off that may be.
+    /// Seconds of all pieces on one thread, with the error of this estimate.
     fn seconds(&self) -> (f64, f64) {
         let all = [&self.tiles, &self.curves, &self.best];
         let squares: f64 = all.iter().map(|s| s.spread().powi(2)).sum();

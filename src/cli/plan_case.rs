@@ -1,4 +1,4 @@
-//! `slipmap plan` of a case file: what `simulate` would do with it, without following the motion.
+//! `slipmap plan` for a case file: what `simulate` would do with it, without following the motion.
 
 use std::path::{Path, PathBuf};
 
@@ -99,7 +99,7 @@ impl Facts {
         Ok(())
     }
 
-    /// How many samples, how dense, and until when.
+    /// The number, density and end of the samples, in words.
     fn sampled(&self) -> String {
         let time = |value: f64| self.case.with_unit("time", value);
         let dense = match (self.interval, self.samples_per_step) {
@@ -115,7 +115,7 @@ impl Facts {
     }
 }
 
-/// How many multiples of `each` there are from 0 to `end`.
+/// Number of multiples of `each` from 0 to `end`.
 fn multiples(end: f64, each: f64) -> u64 {
     (end / each).floor() as u64 + 1
 }

@@ -19,9 +19,9 @@ use super::say;
 use super::signals::Signals;
 use super::text_output::STANDARD_OUTPUT;
 
-/// What a signal leaves.
+/// The message after a signal.
 const NOT_DRAWN: &str = "the picture is not drawn";
-/// The name by which a picture on standard output has its format.
+/// The name from which a picture on standard output gets its format.
 const PIPED: &str = "-.png";
 
 #[derive(Debug, clap::Args)]
@@ -72,7 +72,7 @@ pub(super) struct Args {
     no_legend: bool,
 }
 
-/// The size of a picture where none is asked for.
+/// The default size of a picture.
 const SIZE: &str = "1600x1100";
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -178,7 +178,7 @@ fn draw_trace(
     picture::draw_trace_file(&TraceFile::open(trace)?, picture, options)
 }
 
-/// A motion has no fields and no axes to choose from.
+/// Refuses options for maps: a motion has no fields and no axes to choose from.
 fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
     let given = [
         ("--field", args.field.is_some()),
@@ -194,7 +194,7 @@ fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// How the picture that is asked for differs from that of a run: the words that its name gets.
+/// The words in the name of the requested picture: how it differs from the picture of a run.
 fn shown(args: &Args) -> Vec<String> {
     let kind = args.kind.and_then(|kind| kind.to_possible_value());
     let name = |name: &String| Field::from_name(name).map_or(name.clone(), |f| f.name().into());

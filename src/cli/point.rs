@@ -21,13 +21,14 @@ use super::point_args::PointArgs;
 use super::system_args::{OTHERS, SystemArgs};
 use super::{point_system, say};
 
-/// Roots in a picture, pairs counted once: enough to see how they lie.
+/// Number of roots in a picture, with pairs counted once: enough to see their pattern.
 const ROOTS_DRAWN: u8 = 14;
 
-/// The farthest line right of which roots are counted.
+/// The largest real part of a line to the right of which roots are counted.
 const LARGEST_LINE: f64 = 1e12;
 
-/// Stable intervals printed for people; the JSON output has them all, up to a hundred thousand.
+/// Number of stable intervals printed for people; the JSON output has all, up to a hundred
+/// thousand.
 const INTERVALS_SHOWN: usize = 12;
 
 #[derive(Debug, clap::Args)]
@@ -123,7 +124,7 @@ impl Args {
     }
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("point").or::<Point>().or::<SystemPoint>()
 }
@@ -176,7 +177,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// A point of a system from a file; `from` is the flag that gave it, with its value.
+/// Answers for a point of a system from a file; `from` is the flag that gave it, with its value.
 fn of_system(
     args: &Args,
     (model, mut at): (&SystemModel, Evaluation),
@@ -206,8 +207,8 @@ fn of_system(
     )?)
 }
 
-/// Draws the point with the roots of a picture; with those of `listed` where some of the others
-/// are not found.
+/// Draws the point with the number of roots for a picture; with those of `listed` if some of the
+/// others are not found.
 fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result<(), Failure> {
     let wanted = Wanted {
         roots: ROOTS_DRAWN,
@@ -230,7 +231,7 @@ fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result
     saved.map_err(|error| Failure::failed(error.to_string()))
 }
 
-/// Whether it is stable, in words.
+/// Whether the point is stable, in words.
 pub(super) fn verdict(stability: &Stability) -> &'static str {
     match (stability.stable, stability.marginal, stability.reason) {
         (_, true, _) => "marginal: within rounding of a stability boundary",
@@ -270,7 +271,7 @@ fn print(
     tell_dimensionless(out, units)
 }
 
-/// Everything of it; what other delays would do only where they are known.
+/// Prints the stability of a point; results for other delays only if these are known.
 pub(super) fn print_stability(
     stability: &Stability,
     line_of_delays: bool,

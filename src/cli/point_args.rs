@@ -1,4 +1,4 @@
-//! A point at which sliding is asked for: by flags, of a map's cell, or from a file of a setting.
+//! The arguments for a point of sliding: flags, a map's cell, or a file of a setting.
 
 use std::path::Path;
 
@@ -22,12 +22,12 @@ pub(super) struct PointArgs {
 }
 
 impl PointArgs {
-    /// The map whose cell is asked for.
+    /// The map whose cell is requested.
     pub(super) fn map(&self) -> Option<&Path> {
         self.cell.map.as_deref()
     }
 
-    /// The setting of the cell of a map, where that is one of a system from a file.
+    /// The setting of the cell of a map, if the map is of a system from a file.
     pub(super) fn cell_of_system(&self) -> Result<Option<Setting>, Failure> {
         let setting = self.cell.of_system()?;
         if setting.is_some() {
@@ -41,14 +41,14 @@ impl PointArgs {
         self.parameters.given(parameter)
     }
 
-    /// Nothing but the flags of these parameters is given beside the flag `with`, which says the
-    /// rest.
+    /// Checks that beside the flag `with`, which gives the rest, there are only the flags of the
+    /// parameters `but`.
     pub(super) fn check_alone(&self, with: &str, but: &[Parameter]) -> Result<(), Failure> {
         let others = self.cell.map.is_some() || self.file.is_given();
         alone(with, others || self.parameters.any_but(but))
     }
 
-    /// The setting, from a map or from flags, and its units.
+    /// The setting, from a file, a map or flags, and its units.
     pub(super) fn read(&self) -> Result<(Setting, Units), Failure> {
         let given = self.parameters.any_but(&[]);
         if let Some(point) = self.file.point(PointOf::Sliding)? {

@@ -9,7 +9,7 @@ use slipmap::sweep::input::units::Units;
 use super::json::Inputs;
 use super::point::{print_stability, verdict};
 
-/// What was asked.
+/// The inputs.
 pub(super) fn inputs(
     (flag, named): (&str, &str),
     point: &SystemPoint,

@@ -8,7 +8,7 @@ use super::failure::Failure;
 
 /// The name of the subcommand.
 pub(super) const NAME: &str = "read-map";
-/// Address space that such a process may use: damaged files can ask for much.
+/// The address space of this process: a damaged file can ask for much memory.
 #[cfg(unix)]
 const MOST_MEMORY: libc::rlim_t = 2 << 30;
 
@@ -23,12 +23,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     limit();
     let input = std::io::stdin().lock();
     let read = slipmap::serve::read_map(&args.map, input, std::io::stdout());
-    // Not by way of the hooks at exit: the HDF5 library would close what is being read.
+    // Exit without exit hooks: with them the HDF5 library would close what is being read.
     low_level::exit(i32::from(read.is_err()))
 }
 
-/// Little memory, and no image of it where it crashes. Where the system refuses, it goes on
-/// without.
+/// Limits the memory and disables core dumps. If the system refuses, the process continues without
+/// limits.
 fn limit() {
     #[cfg(unix)]
     for (resource, most) in [(libc::RLIMIT_AS, MOST_MEMORY), (libc::RLIMIT_CORE, 0)] {

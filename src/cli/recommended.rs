@@ -1,4 +1,4 @@
-//! What `slipmap best` recommends.
+//! The setting that `slipmap best` recommends.
 
 use clap::ValueEnum;
 use serde::Serialize;
@@ -19,19 +19,19 @@ pub(super) enum Control {
     Load,
 }
 
-/// The best settings, and the margins and v_c of the one that is recommended.
+/// The best settings, with the margins and v_c of the recommended one.
 pub(super) struct Recommended {
     pub(super) control: Control,
     pub(super) ranges: Ranges,
-    /// How far gain, delay and μ′ may be off, where that is asked.
+    /// The largest relative error of gain, delay and μ′, if requested.
     pub(super) spread: Option<f64>,
     pub(super) found: BestSettings,
-    /// None where it is not asked for, or where no setting stays stable.
+    /// None if it is not requested, or no setting stays stable.
     pub(super) robust: Option<RobustSetting>,
-    /// The setting itself: the robust one, where there is one.
+    /// The recommended setting: the robust one, if there is one.
     pub(super) setting: Setting,
     pub(super) margins: Margins,
-    /// v_c, where there is a friction law.
+    /// v_c, if there is a friction law.
     pub(super) vc: Option<CriticalVelocity>,
 }
 

@@ -17,9 +17,9 @@ use super::run::{default_threads, parse_threads};
 use super::say;
 use super::signals::Signals;
 
-/// The page where no other is named.
+/// The default page.
 const PAGE: &str = "letter.html";
-/// The first bytes of a page, among which it says who made it.
+/// The first bytes of a page, which name its generator.
 const HEAD: u64 = 1024;
 
 #[derive(Debug, clap::Args)]
@@ -50,7 +50,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// Shows each sweep by a bar of its own.
+/// Shows a bar for each sweep.
 struct Bars(RefCell<Progress>);
 
 impl Observer for Bars {
@@ -66,7 +66,7 @@ impl Observer for Bars {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let page = page(args)?;
-    // Claimed before it is computed: what cannot be written is said at once.
+    // Claimed before the computation, so that a name that cannot be written fails at once.
     let output = page.map(Output::claim).transpose()?;
     let folder = Folder::of(args.keep.as_deref())?;
     let bars = Bars(RefCell::new(Progress::new(true)));
@@ -105,12 +105,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     tell(&found, page)
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("reproduce").or::<Reproduction>()
 }
 
-/// Every claim on a line: its verdict, its name, and what says most of it.
+/// Prints every claim on a line: its verdict, its name, and its most telling value.
 fn tell(found: &Reproduction, page: Option<&Path>) -> Result<(), Failure> {
     for claim in &found.claims {
         let value = claim.values.first();
@@ -132,7 +132,7 @@ fn tell(found: &Reproduction, page: Option<&Path>) -> Result<(), Failure> {
     page.map_or(Ok(()), |page| say::result(page.display()))
 }
 
-/// Where maps are made: a folder that is kept, or one that is gone in the end.
+/// Where maps are made: a folder that is kept, or one that is removed at the end.
 enum Folder<'a> {
     Kept(&'a Path),
     Gone(tempfile::TempDir),
@@ -165,7 +165,8 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// The page to write, if any. Its name has to be that of a page; only an earlier page is replaced.
+/// The page to write, if any. Its name must be that of a page, and it may replace only an earlier
+/// page.
 fn page(args: &Args) -> Result<Option<&Path>, Failure> {
     let path = match &args.output {
         None if args.json => return Ok(None),
@@ -200,7 +201,7 @@ fn page(args: &Args) -> Result<Option<&Path>, Failure> {
 
 /// Whether a file is an earlier page.
 fn is_page(path: &Path) -> bool {
-    // A pipe would be waited for.
+    // Opening a pipe would block.
     if !path.metadata().is_ok_and(|metadata| metadata.is_file()) {
         return false;
     }

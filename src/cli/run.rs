@@ -22,7 +22,7 @@ use super::show::{nothing_to_do, show};
 use super::signals::Signals;
 use super::sweep_file::read_plan;
 
-/// More threads than this are taken for a slip of the finger.
+/// The most threads; more are taken for a typing error.
 const MOST_THREADS: usize = 4096;
 
 #[derive(Debug, clap::Args)]
@@ -52,7 +52,7 @@ pub(super) struct Args {
     save_every: Duration,
 }
 
-/// The number of threads of a `--threads` flag.
+/// Reads the number of a `--threads` flag.
 pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
     text.parse()
         .ok()
@@ -60,22 +60,22 @@ pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
-/// The memory of a run where none is given.
+/// The default memory of a run.
 pub(super) const MEMORY: &str = "500MB";
 
-/// The bytes of a `--memory` flag.
+/// Reads the bytes of a `--memory` flag.
 pub(super) fn parse_memory(text: &str) -> Result<u64, String> {
     text.parse::<ByteSize>()
         .map(|size| size.as_u64())
         .map_err(|_| "expected a size such as 500MB or 2GiB".to_owned())
 }
 
-/// Of the threads that are `asked` for, as many as there are pieces.
+/// The number of threads that have a piece to compute, at most `asked`.
 fn useful(plan: &Plan, asked: usize) -> usize {
     usize::try_from(plan.pieces().total()).map_or(asked, |pieces| asked.min(pieces))
 }
 
-/// As many of the threads that are `asked` for as are useful and stay within `memory` bytes.
+/// The number of useful threads, at most `asked`, that stays within `memory` bytes.
 pub(super) fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
     let needs = Memory::of(plan);
     needs.threads_within(memory, useful(plan, asked)).ok_or_else(|| {
@@ -89,7 +89,7 @@ pub(super) fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<u
     })
 }
 
-/// Seconds of a `--save-every` flag.
+/// Reads the seconds of a `--save-every` flag.
 fn parse_seconds(text: &str) -> Result<Duration, String> {
     let seconds = text
         .parse::<f64>()
@@ -100,7 +100,7 @@ fn parse_seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "expected a number of seconds from 0 to 3600".to_owned())
 }
 
-/// As many threads as the machine offers to this process.
+/// The number of threads that the machine offers to this process.
 pub(super) fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
@@ -147,7 +147,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Who takes note of a run, and what ends it.
+/// The observers of a run, and the signals that end it.
 struct Watched<'a> {
     observers: &'a Both<'a>,
     signals: &'a Signals,
@@ -199,8 +199,8 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
     told
 }
 
-/// A map is computed whole or in shards: what the other way has computed is not begun a second
-/// time.
+/// A map is computed either as a whole or in shards. Refuses to start one way if the other has
+/// already computed something.
 fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     let others = shards::present(map)?;
     let is_other = |shard: &Shard| shard.is_whole() != asked.is_whole();
@@ -223,10 +223,11 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     Err(Failure::bad_input_with_help(message, help))
 }
 
-/// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must
-/// not be replaced.
+/// A remark if the map of this plan exists and `fresh` is not set; an error if the existing file
+/// must not be replaced.
 ///
-/// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
+/// `fresh` replaces only maps: with another file of this name, the user has more likely made a
+/// mistake.
 pub(super) fn already_there(
     path: &Path,
     plan: &Plan,
@@ -237,10 +238,10 @@ pub(super) fn already_there(
     }
     match MapFile::open(path) {
         Ok(_) if fresh => Ok(None),
-        // It is being computed again: an earlier run had --fresh.
+        // It is being computed again, by an earlier run with --fresh.
         Ok(_) if has_tiles_of(path, plan) => Ok(None),
         Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => {
-            // One that was put together before its time is replaced by the complete one.
+            // A partial map is replaced by the complete one.
             Ok((!map.is_partial()).then(|| what_differs(&map, plan)))
         }
         Ok(_) => Err(Failure::bad_input_with_help(
@@ -271,7 +272,7 @@ fn has_tiles_of(path: &Path, plan: &Plan) -> bool {
     shards::hold(path, &asked)
 }
 
-/// What `--fresh` would change in a complete map of the same cells.
+/// How a complete map of the same cells would change with `--fresh`.
 fn what_differs(map: &MapFile, plan: &Plan) -> String {
     let version = map.root_text(root::PROGRAM_VERSION).unwrap_or_default();
     if version != env!("CARGO_PKG_VERSION") {

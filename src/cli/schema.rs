@@ -1,4 +1,4 @@
-//! `slipmap schema`: what the JSON of another command looks like.
+//! `slipmap schema`: the JSON Schema of the output of another command.
 
 use clap::ValueEnum;
 

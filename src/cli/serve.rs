@@ -15,7 +15,7 @@ use super::run::default_threads;
 use super::say;
 use super::signals::Signals;
 
-/// The port where none is given.
+/// The default port.
 const DEFAULT_PORT: u16 = 8417;
 /// The program that opens a link in a browser.
 const OPENER: &str = if cfg!(target_os = "macos") {
@@ -67,7 +67,7 @@ impl Args {
         }
     }
 
-    /// Where the server cannot listen.
+    /// The failure of a server that cannot listen.
     fn refused(&self, error: &std::io::Error) -> Failure {
         match self.place() {
             Place::Address { address, port } => Failure::bad_input_with_help(
@@ -81,7 +81,7 @@ impl Args {
         }
     }
 
-    /// Tells who may use the server, and how.
+    /// Reports who may use the server, and how.
     fn tell(&self) {
         match self.place() {
             #[cfg(unix)]
@@ -101,8 +101,8 @@ impl Args {
     }
 }
 
-/// A file for this user alone that leads a browser to a link: what is on a command line is seen by
-/// all users of a machine.
+/// A file, readable by this user alone, that leads a browser to a link. On a command line, all
+/// users of the machine would see the link.
 fn leading_to(link: &str) -> std::io::Result<TempPath> {
     let named = tempfile::Builder::new()
         .prefix("slipmap-")
@@ -117,7 +117,7 @@ fn leading_to(link: &str) -> std::io::Result<TempPath> {
     Ok(file.into_temp_path())
 }
 
-/// Opens a file in a browser; where that fails, the link can be opened by hand.
+/// Opens a file in a browser. If that fails, the user can open the link.
 fn open(file: &Path) {
     let mut command = Command::new(OPENER);
     command.arg(file).stdin(Stdio::null());

@@ -1,5 +1,5 @@
-//! A setting from a file, in the place of flags: `--setting SETTING.toml`; and files of settings
-//! for the commands that follow.
+//! A setting from a file instead of flags, `--setting SETTING.toml`; and files of settings for
+//! later commands.
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ impl SettingArgs {
         self.setting.is_some()
     }
 
-    /// The point in the file; none where no file is given.
+    /// The point in the file; none without a file.
     pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
         let Some(path) = &self.setting else {
             return Ok(None);
@@ -40,7 +40,7 @@ impl SettingArgs {
     }
 }
 
-/// An error if a setting must not be written to `path`: what slipmap did not write stays.
+/// An error if `path` has a file that slipmap did not write, which must not be replaced.
 pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
     let name = path.display();
     if path.extension().is_none_or(|extension| extension != "toml") {
@@ -63,7 +63,7 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes a setting: whole, or not at all.
+/// Writes a setting, completely or not at all.
 pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
     let takers = match setting.law() {
         Some(_) => "point and vc take it with --setting, simulate as a case file",

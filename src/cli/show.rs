@@ -1,4 +1,4 @@
-//! A complete map is drawn beside it, and on the terminal: after `run` and `merge`.
+//! Draws a complete map beside it and on the terminal, after `run` and `merge`.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -15,13 +15,13 @@ use super::failure::Failure;
 use super::signals::Signals;
 use super::{plot, say};
 
-/// Columns of the picture on the terminal: as many as every terminal has.
+/// Columns of the picture on the terminal, no more than any terminal has.
 const PREVIEW_WIDTH: usize = 78;
-/// The most planes whose best settings are printed; the map holds those of all.
+/// The most planes whose best settings are printed; the map has all of them.
 const PLANES_TOLD: usize = 8;
 
-/// Says that a map is complete, and draws it where an earlier command did not come to that, or
-/// where the sweep file names another field for pictures by now.
+/// Reports that a map is already complete. Draws it if an earlier command did not, or if the sweep
+/// file now names another field for pictures.
 pub(super) fn nothing_to_do(
     path: &Path,
     remark: &str,
@@ -37,12 +37,12 @@ pub(super) fn nothing_to_do(
     ))
 }
 
-/// Tells the best setting of every plane, of the first ones where there are many.
+/// Prints the best setting of every plane, up to a limit.
 fn tell_best(map: &MapFile) -> Result<(), StoreError> {
     let Some((gain, tau)) = map.best_plane() else {
         return Ok(());
     };
-    // A map without its sweep is told by `verify`.
+    // A map without its sweep is a matter for `verify`.
     let Ok(units) = map.sweep().map(|sweep| sweep.units) else {
         return Ok(());
     };
@@ -88,8 +88,8 @@ fn tell_best(map: &MapFile) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Whether there is no picture beside a map, or one of what was there before, or of another field
-/// than the sweep file names.
+/// Whether a map has no picture, an older one than the map, or one of another field than the sweep
+/// file names.
 fn lacks_picture(map: &Path, named: Named) -> bool {
     let beside = plot::beside(map);
     let written = |path: &Path| path.metadata().and_then(|m| m.modified());
@@ -107,8 +107,8 @@ fn lacks_picture(map: &Path, named: Named) -> bool {
     }
 }
 
-/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
-/// there.
+/// Draws a complete map beside it and on the terminal. A failure here is only a warning: the map
+/// exists.
 pub(super) fn show(path: &Path, named: Named, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
@@ -122,7 +122,7 @@ pub(super) fn show(path: &Path, named: Named, signals: &Signals) {
     };
     let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
     match drawn.and_then(Picture::save_unasked) {
-        // Where standard output takes no more, the line about the map has said so.
+        // If standard output is closed, the line about the map has already reported it.
         Ok(()) => drop(say::result(picture.display())),
         Err(PictureError::NothingToDraw) => {}
         Err(error @ PictureError::OthersWork { .. }) => say::remark(format_args!(

@@ -1,4 +1,4 @@
-//! SIGINT, SIGTERM and SIGHUP: the first one stops a command in order, a second one at once.
+//! SIGINT, SIGTERM and SIGHUP: the first one stops a command in order, the second one at once.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -12,12 +12,12 @@ use signal_hook::{flag, low_level};
 use super::failure::Failure;
 use super::say;
 
-/// How often a signal is looked for.
+/// Time between checks for a signal.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// The signals as flags.
 pub(super) struct Signals {
-    /// One has come.
+    /// Whether a signal has come.
     pub stop: Arc<AtomicBool>,
     code: Arc<AtomicUsize>,
 }
@@ -37,7 +37,7 @@ impl Signals {
             Failure::failed(message)
         };
         for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)] {
-            // `nohup` has it ignored, and so it stays.
+            // `nohup` has the signal ignored; it stays so.
             if signal == SIGHUP && is_ignored(signal) {
                 continue;
             }
@@ -57,7 +57,7 @@ impl Signals {
         }
     }
 
-    /// [`Signals::interrupted`] where a signal has come, else `failure`.
+    /// [`Signals::interrupted`] if a signal has come, else `failure`.
     pub(super) fn or_stopped(&self, failure: Failure, message: impl Display) -> Failure {
         match self.stop.load(Ordering::Relaxed) {
             true => self.interrupted(message),
@@ -65,8 +65,8 @@ impl Signals {
         }
     }
 
-    /// Does work that changes no file and cannot look at a flag, a call of a library for instance.
-    /// A signal before or meanwhile ends the process with `message`.
+    /// Does work that changes no file and cannot check a flag, such as a call of a library. A
+    /// signal before or during the work ends the process with `message`.
     pub(super) fn or_end<T>(&self, message: impl Display, work: impl FnOnce() -> T) -> T {
         let busy = Arc::new(AtomicBool::new(true));
         let watch = Watch {
@@ -79,7 +79,7 @@ impl Signals {
         let watcher = thread::spawn(move || watch.until_done());
         let done = work();
         if !busy.swap(false, Ordering::SeqCst) {
-            // The process is ending: whatever comes behind the work must not begin.
+            // The process is ending, so the code after the work must not begin.
             loop {
                 thread::park();
             }
@@ -89,11 +89,11 @@ impl Signals {
     }
 }
 
-/// Looks for a signal while other work is done.
+/// Waits for a signal while other work is done.
 struct Watch {
     stop: Arc<AtomicBool>,
     code: Arc<AtomicUsize>,
-    /// Whoever sets it to false first has the say: the work that is done, or the signal.
+    /// The first to set it to false decides: the finished work, or the signal.
     busy: Arc<AtomicBool>,
     message: String,
 }
@@ -109,8 +109,8 @@ impl Watch {
     fn look(&self) {
         if self.stop.load(Ordering::Relaxed) && self.busy.swap(false, Ordering::SeqCst) {
             say::remark(&self.message);
-            // Not by way of the hooks at exit: the HDF5 library would close files that the work is
-            // reading.
+            // Exit without exit hooks: with them the HDF5 library would close files that the work
+            // is reading.
             low_level::exit(self.code.load(Ordering::Relaxed) as i32);
         }
     }

@@ -63,7 +63,7 @@ struct MotionOut {
     trace: String,
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("simulate").or::<MotionOut>()
 }
@@ -72,7 +72,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     args.check_alone()?;
     let spec = args.read()?;
-    // A cell of a map has a delay whatever its gains are; flags are warned of as they are read.
+    // A cell of a map has a delay whatever its gains are; flags are checked when they are read.
     warn_of_idle_delay(args.case.is_some() && spec.setting.has_idle_delay());
     if spec.start_assumed {
         say::note(format_args!(
@@ -103,7 +103,7 @@ fn follow(spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
     trace.map_err(failure)
 }
 
-/// The samples alone, as text.
+/// Writes only the samples, as text.
 fn simulate_to_text(
     args: &Args,
     to: To,
@@ -136,7 +136,7 @@ fn simulate_to_text(
 }
 
 impl Args {
-    /// The case.
+    /// Reads the case.
     fn read(&self) -> Result<CaseSpec, Failure> {
         if let Some(case) = &self.case {
             return read_case(case);
@@ -149,7 +149,7 @@ impl Args {
         spec.map_err(|error| Failure::in_file(error, from, &text))
     }
 
-    /// The case of the flags, as a file would say it: the trace holds that.
+    /// The text of a case file for the flags, which is stored in the trace.
     fn case_of_flags(&self) -> Result<String, Failure> {
         if !self.parameters.any_but(&[]) {
             return Err(Failure::bad_input_with_help(
@@ -163,7 +163,7 @@ impl Args {
         Ok(setting_text(&setting, &units, |_| true))
     }
 
-    /// A case or a map stands alone.
+    /// Checks that no other flags of the setting accompany a case or a map.
     fn check_alone(&self) -> Result<(), Failure> {
         let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
@@ -173,7 +173,7 @@ impl Args {
         }
     }
 
-    /// Where samples are written as text; none where the trace is written as HDF5.
+    /// Where samples are written as text; none if the trace is written as HDF5.
     fn text(&self) -> Result<Option<To<'_>>, Failure> {
         let Some(path) = &self.output else {
             return Ok(None);
@@ -189,7 +189,7 @@ impl Args {
         }
     }
 
-    /// What became of the motion, and where its trace is.
+    /// Reports the outcome of the motion, and the path of its trace.
     fn tell(&self, spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<(), Failure> {
         if self.json {
             let inputs = Inputs::default().and("case", CaseFacts::of(spec));
@@ -217,7 +217,7 @@ impl Args {
         }
     }
 
-    /// The trace to write: by the name of the case, or of the map.
+    /// The path of the trace: from the name of the case, or of the map.
     fn output_path(&self) -> Result<PathBuf, Failure> {
         let map = self.cell.map.as_deref().and_then(Path::file_stem);
         let of_map = map.map(|stem| {
@@ -230,7 +230,7 @@ impl Args {
         output_path(given, case, "trace")
     }
 
-    /// What is said of the trace's origin.
+    /// The provenance of the trace.
     fn provenance(&self) -> Provenance {
         match (&self.case, &self.cell.map) {
             (Some(case), _) => provenance("simulate", case),
@@ -240,8 +240,8 @@ impl Args {
     }
 }
 
-/// An error if what stands at `path` must not be replaced: only traces are, those of other cases
-/// only with `fresh`.
+/// An error if the file at `path` must not be replaced: only traces may be, and those of other
+/// cases only with `fresh`.
 fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
@@ -268,8 +268,8 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
     }
 }
 
-/// Draws the picture. One that is not asked for by name does not replace what is not slipmap's;
-/// what fails then is a warning.
+/// Draws the picture. Under a default name it replaces only files of slipmap, and a failure is only
+/// a warning.
 fn draw(
     args: &Args,
     (spec, trace): (&CaseSpec, &Trace),

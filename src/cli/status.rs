@@ -1,4 +1,4 @@
-//! `slipmap status`: how far a map is, from another terminal.
+//! `slipmap status`: the progress of a map, from another terminal.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -19,7 +19,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::say::Rows;
 
-/// The most bytes at the end of a log that are read to tell the rate of a run.
+/// The most bytes of a log that are read for the rate of a run.
 const MOST_OF_LOG: u64 = 64 << 20;
 
 #[derive(Debug, clap::Args)]
@@ -43,7 +43,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     status.print(&args.map)
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("status").or::<StatusAnswer>()
 }
@@ -160,13 +160,13 @@ fn of_tiles(map: &Path, survey: &Survey) -> Status {
     }
 }
 
-/// Cells per second since the run that works on a shard started, as its log and its tiles say.
+/// Cells per second since the current run of a shard started, from its log and its tiles.
 fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
     if !found.running {
         return None;
     }
     let path = log::path(map, found.shard);
-    // What is no file may wait for ever, and a file of another kind may be one long line.
+    // Opening anything but a file might block, and a file of another kind may be one long line.
     if !path.metadata().ok()?.is_file() {
         return None;
     }
@@ -179,7 +179,7 @@ fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
     });
     let (time, left) = started.last()?;
     let since = humantime::parse_rfc3339(&time).ok()?;
-    // A clock that was set back tells no rate.
+    // After the clock was set back, there is no rate.
     let elapsed = SystemTime::now().duration_since(since).ok()?;
     let computed = found
         .cells_done
@@ -197,7 +197,7 @@ impl Status {
         (!rates.is_empty()).then(|| rates.iter().sum())
     }
 
-    /// Until the slowest of the shards that are running is done.
+    /// Seconds until the slowest running shard is done.
     fn seconds_left(&self) -> Option<f64> {
         let left = self.shards.iter().filter_map(ShardStatus::seconds_left);
         left.reduce(f64::max)

@@ -1,4 +1,4 @@
-//! Reading sweep files, case files and tables of friction, with errors that point into them.
+//! Reads sweep files, case files and tables of friction, with errors that point into them.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -16,8 +16,8 @@ use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 use super::failure::Failure;
 use super::kind::Kind;
 
-/// A larger file is refused as a sweep or case file. The text goes into maps and, with up to twice
-/// as many bytes, into manifests.
+/// The most bytes of a sweep or case file. The text goes into maps and, with up to twice as many
+/// bytes, into manifests.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.
@@ -27,7 +27,7 @@ pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     })
 }
 
-/// What a file describes.
+/// The contents of a sweep or case file.
 pub(super) enum Described {
     /// A map.
     Sweep(Plan),
@@ -35,7 +35,7 @@ pub(super) enum Described {
     Case(CaseSpec),
 }
 
-/// What the sweep or case file at `path` describes.
+/// Reads the sweep or case file at `path`.
 pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
     read_with_table(path, "sweep", |text| {
         if is_case_file(text) {
@@ -51,7 +51,7 @@ pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
     read_with_table(path, "case", str::parse)
 }
 
-/// What the file at `path` gives of a point.
+/// Reads a point from the file at `path`.
 pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failure> {
     if let Some(kind @ Kind::Text(TextKind::Sweep | TextKind::Case)) = Kind::of(path) {
         let (message, help) = kind.not(path, "a file of a setting");
@@ -60,23 +60,24 @@ pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failur
     read_with_table(path, "setting", |text| PointSpec::read(text, of))
 }
 
-/// The friction curve of the two columns in the file at `path`, of a law with this `mu_s`.
+/// Reads a friction curve from the two columns of the file at `path`, for a law with this `mu_s`.
 pub(super) fn read_table(path: &Path, mu_s: f64) -> Result<Table, Failure> {
     let (name, text) = text_of(path, "table")?;
     table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
 }
 
-/// The system of the file at `path`.
+/// Reads the system in the file at `path`.
 pub(super) fn read_system(path: &Path) -> Result<SystemModel, Failure> {
     let (name, text) = text_of(path, "system")?;
     text.parse()
         .map_err(|error| Failure::in_file(error, &name, &text))
 }
 
-/// What stands for standard input in the place of a file.
+/// The name that stands for standard input.
 pub(super) const STANDARD_INPUT: &str = "-";
 
-/// Reads a file whose friction law may stand in another file, named from the folder of the first.
+/// Reads a file whose friction law may be in another file, with a path relative to the folder of
+/// the first.
 fn read_with_table<T>(
     path: &Path,
     kind: &str,
@@ -120,7 +121,7 @@ fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
     }
 }
 
-/// What was read as a text, or why it is none.
+/// The bytes read, as text, or why they are no text.
 fn as_text(read: io::Result<Vec<u8>>, kind: &str) -> Result<String, String> {
     let read = read.map_err(|error| error.to_string())?;
     if read.len() as u64 > MOST_BYTES {
@@ -130,14 +131,14 @@ fn as_text(read: io::Result<Vec<u8>>, kind: &str) -> Result<String, String> {
 }
 
 fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    // Opening a pipe would wait for who writes into it.
+    // Opening a pipe would wait for a writer.
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::other("it is no file"));
     }
     at_most(File::open(path)?)
 }
 
-/// All bytes, or one more than a file may have.
+/// Reads all bytes, up to one more than a file may have.
 fn at_most(from: impl Read) -> io::Result<Vec<u8>> {
     let mut read = Vec::new();
     from.take(MOST_BYTES + 1).read_to_end(&mut read)?;

@@ -1,5 +1,5 @@
-//! A system from a file, or one that is part of the program, in the place of the letter's:
-//! `--system FILE|NAME --set NAME=VALUE`.
+//! A system from a file, or one that is part of the program, instead of the letter's: `--system
+//! FILE|NAME --set NAME=VALUE`.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub(super) struct SystemArgs {
     set: Vec<Set>,
 }
 
-/// A value of a parameter, as the flag says it.
+/// A value of a parameter, as given by the flag.
 #[derive(Debug, Clone, PartialEq)]
 struct Set {
     name: String,
@@ -41,7 +41,7 @@ fn parse_set(text: &str) -> Result<Set, String> {
     })
 }
 
-/// The system of that name, or of the file at that path.
+/// The system with this name, or in the file at this path.
 pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
     if let Some(model) = shipped::system(named) {
         return Ok(model);
@@ -57,12 +57,12 @@ pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
     read_system(path)
 }
 
-/// The parameters that every system may have besides its own, each with a flag.
+/// The parameters besides its own that any system may have, each with a flag.
 pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
 
 impl SystemArgs {
-    /// The system and its setting; none where no system is given. `flag` gives the value of the
-    /// flag of one of [`OTHERS`].
+    /// The system and its setting; none without a system. `flag` gives the value of the flag for
+    /// one of [`OTHERS`].
     pub(super) fn read(
         &self,
         flag: impl Fn(Parameter) -> Option<f64>,

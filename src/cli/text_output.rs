@@ -1,5 +1,5 @@
-//! Where text for other programs goes: standard output, or a file that is there whole or not at
-//! all.
+//! Output of text for other programs: to standard output, or to a file that is written completely
+//! or not at all.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -12,25 +12,25 @@ use slipmap::store::{Output, StoreError};
 use super::failure::Failure;
 use super::signals::Signals;
 
-/// What stands for standard output in the place of a file.
+/// The name that stands for standard output.
 pub(super) const STANDARD_OUTPUT: &str = "-";
 
-/// Where a text goes.
+/// The destination of a text.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum To<'p> {
-    /// Standard output, on which nothing else is told then.
+    /// Standard output, which then has nothing else.
     StandardOutput,
     /// A file.
     File(&'p Path),
 }
 
 impl<'p> To<'p> {
-    /// Where `--output` says; without it, or where that is `-`: standard output. What is at that
-    /// name already may be anybody's: only `fresh` replaces it.
+    /// The destination given by `--output`; standard output if there is none, or it is `-`. An
+    /// existing file may be anybody's, so only `fresh` replaces it.
     ///
     /// # Errors
-    /// When the name promises another format than CSV, is that of the file that is `read`, or
-    /// there is a file already.
+    /// When the extension is not that of CSV, the name is that of the file being `read`, or the
+    /// file already exists.
     pub(super) fn named(
         output: Option<&'p Path>,
         read: Option<&Path>,
@@ -62,11 +62,11 @@ impl<'p> To<'p> {
         Ok(Self::File(path))
     }
 
-    /// Writes the text that `write` makes, which looks at a flag now and then whether to stop.
-    /// `message`: what a signal leaves.
+    /// Writes the text made by `write`, which checks a stop flag from time to time. `message`: the
+    /// message after a signal.
     ///
     /// # Errors
-    /// Those of `write`. A file is then as it was before.
+    /// Those of `write`. An existing file then stays as it was.
     pub(super) fn write<T: Send>(
         self,
         signals: &Signals,
@@ -74,7 +74,7 @@ impl<'p> To<'p> {
         write: impl FnOnce(&mut dyn Write, &AtomicBool) -> Result<T, TableError>,
     ) -> Result<T, Failure> {
         let path = match self {
-            // A reader that reads no further holds the writing up: a signal ends it all the same.
+            // A reader that stops reading blocks the writing; a signal still ends it.
             Self::StandardOutput => {
                 let mut out = std::io::stdout().lock();
                 let never = AtomicBool::new(false);
@@ -99,7 +99,7 @@ impl<'p> To<'p> {
     }
 }
 
-/// Whether a file has the name of a table as text.
+/// Whether a file has the extension of a table as text.
 pub(super) fn is_csv(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))

@@ -97,7 +97,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("vc")
         .or::<CriticalVelocity>()
@@ -114,7 +114,7 @@ fn inputs(setting: &Setting, units: &Units, protocol: search::Protocol) -> Input
     }
 }
 
-/// What is said of v_c where it is not decided: between what it lies.
+/// The bounds of v_c in words, if it is undecided.
 fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
     let unit = unit_behind(&Field::Vc.unit(units));
     let ends = match (found.vc_lower, found.vc_upper) {
@@ -153,8 +153,8 @@ fn print_found(
     print(json, found, not_known(found, units).as_deref(), units)
 }
 
-/// The object as one line of JSON with its inputs, or its entries one below the other. Where v_c is
-/// `not_known` neither it, the velocity of lift-off nor a window is shown to people.
+/// Prints the object as one line of JSON with its inputs, or its entries one per line. If v_c is
+/// `not_known`, people see neither v_c, nor the velocity of lift-off, nor windows.
 fn print(
     json: Option<&Inputs>,
     found: &impl Serialize,
@@ -182,9 +182,9 @@ fn print(
     Ok(())
 }
 
-/// The unit of what stands at a key.
+/// The unit of the value of a key.
 fn unit_of(key: &str, units: &Units) -> String {
-    // The field of that name is how many there are.
+    // The field `windows` is their number, which has no unit.
     let field = match key {
         "windows" => Some(Field::Vc),
         _ => Field::from_name(key),
@@ -203,7 +203,7 @@ impl Args {
         Ok((setting, self.parameters.units()))
     }
 
-    /// No flag is given that another protocol needs.
+    /// Checks that no flag of another protocol is given.
     fn check(&self) -> Result<(), Failure> {
         let refuse = |flag: &str, protocol: &str| {
             Err(Failure::bad_input_with_help(
@@ -248,7 +248,7 @@ impl Args {
         })
     }
 
-    /// The phase in words of the flag.
+    /// Reads the phase of the flag.
     fn phase(&self) -> Result<Phase, Failure> {
         match self.phase.as_deref() {
             None => Ok(Phase::After(0.0)),

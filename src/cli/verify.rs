@@ -1,5 +1,5 @@
-//! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of
-//! its cells; whether a trace is what its case comes to.
+//! `slipmap verify`: whether a map is as it was written, and what other methods give for a sample
+//! of its cells; whether a trace follows from its case.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use super::json::{self, AnswerSchema, Inputs};
 use super::say::Rows;
 use super::signals::Signals;
 
-/// More cells or tiles than this are not computed again.
+/// The most cells or tiles that may be computed again.
 const MOST: u64 = 100_000_000;
 
 #[derive(Debug, clap::Args)]
@@ -38,7 +38,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// What its JSON looks like.
+/// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("verify")
         .or::<MapAnswer>()
@@ -74,7 +74,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     verdict(&args.map, report.faults.len(), told)
 }
 
-/// Whether anybody reads on does not change what was found.
+/// The result of a check. It does not depend on whether the output could be written.
 fn verdict(path: &Path, faults: usize, told: Result<(), Failure>) -> Result<(), Failure> {
     let path = path.display();
     match faults {
@@ -84,7 +84,7 @@ fn verdict(path: &Path, faults: usize, told: Result<(), Failure>) -> Result<(), 
     }
 }
 
-/// A map that has tiles but no file is not complete: there is nothing to verify.
+/// Refuses a map that has tiles but no file: it is not complete, so there is nothing to verify.
 fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
     if path.exists() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The stability of sliding over the delays of a line: the number of unstable roots in steps, and
+//! The stability of sliding over the delays of a line: the number of unstable roots, as steps, and
 //! the stable delays.
 
 use std::f64::consts::TAU;
@@ -10,27 +10,27 @@ use crate::linear::{Crossings, Direction};
 use crate::model::ModelError;
 use crate::sweep::{LinearModel, Parameter, Setting};
 
-/// Near a tangency there can be millions of stable intervals; the delays go on to the end of this
-/// one.
+/// The line reaches at least to the end of this many stable intervals. Near a tangency there can be
+/// millions.
 const INTERVALS: usize = 12;
-/// More crossings than this are not told one by one: the number is told at as many places. Nor are
-/// more stable intervals.
+/// The most steps and the most stable intervals. With more crossings than this, the number of
+/// unstable roots is sampled at this many delays.
 const MOST_STEPS: u64 = 2000;
-/// The longest delay told, over the longest one that matters.
+/// The longest delay of the line over the longest one of interest.
 const BEYOND: f64 = 1.15;
 
-/// The delays of a line from 0 on, as far as they matter: to the setting's own, the first
-/// crossings and the ends of the stable intervals. In the units of the setting.
+/// The delays of a line, from 0 to just beyond the setting's own delay, the first crossings and the
+/// ends of the first stable intervals. In the units of the setting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlongDelay {
-    /// Delays (from, to) with the number of unstable roots between, one after the other from 0 to
-    /// `until`.
+    /// Intervals of delays (from, to) with the number of unstable roots in each; together they
+    /// cover 0 to `until`.
     pub steps: Vec<(f64, f64, u64)>,
-    /// The longest delay told.
+    /// The longest delay of the line.
     pub until: f64,
-    /// The stable intervals that begin before that, by growing delay.
+    /// The stable intervals that begin before `until`, in order of delay.
     pub stable: Vec<StableInterval>,
-    /// Others follow at longer delays.
+    /// Whether others follow.
     pub more_stable: bool,
 }
 
@@ -64,7 +64,7 @@ impl AlongDelay {
         }
     }
 
-    /// Of a system beyond the letter's; without steps where there is no count.
+    /// The line of a general system; without steps where roots are not counted.
     fn of_line(line: &DelayLine, tau: f64) -> Self {
         let first: Vec<StableInterval> = line.stable_intervals().take(INTERVALS).collect();
         let until = longest(line.crossings.iter(), &first, (tau, line.time_unit));
@@ -96,7 +96,7 @@ impl AlongDelay {
     }
 }
 
-/// The end of the line of the delay `tau`.
+/// The longest delay of the line for the setting's delay `tau`.
 fn longest<'c>(
     crossings: impl Iterator<Item = &'c Crossing>,
     stable: &[StableInterval],
@@ -112,12 +112,13 @@ fn longest<'c>(
     }
 }
 
-/// Those that are no touches.
+/// The crossings that are not touches.
 fn moving<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> impl Iterator<Item = &'c Crossing> {
     crossings.filter(|c| c.direction != Direction::Touch)
 }
 
-/// The number of unstable roots from 0 to `until`, where it changes so many times, at these delays.
+/// The number of unstable roots from 0 to `until`; it changes `count` times, at the delays
+/// `changes`.
 fn steps(
     (count, changes): (u64, impl Iterator<Item = f64>),
     until: f64,
@@ -155,7 +156,7 @@ mod tests {
         AlongDelay::of(&point.setting).unwrap()
     }
 
-    /// The count is 0 exactly between the ends of the stable intervals, which have another formula.
+    /// The count is 0 exactly inside the stable intervals, which are computed by another formula.
     #[test]
     fn steps_and_stable_intervals_agree() {
         for fixed in [
@@ -184,7 +185,7 @@ mod tests {
         let long = along("mu_prime = -0.3\nalpha_v = -0.33\ntau = 1e6\n");
         assert_eq!(long.steps.len() as u64, MOST_STEPS);
         assert_eq!(long.until, 1.15e6);
-        // Near a tangency lobe follows lobe: those of the delays told are all there.
+        // Near a tangency there are many lobes: those within the line are all there.
         let many = along("mu_prime = -1e-5\nalpha_n = -0.001\ntau = 1\n");
         assert!(
             many.more_stable && many.stable.len() > INTERVALS,

@@ -1,4 +1,5 @@
-//! Every request by its name, and its answer as bytes: what a server and a page without one share.
+//! Every request by its name, with its answer as bytes: common to the server and the page without
+//! one.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -21,10 +22,10 @@ use crate::sweep::input::point_file::{PointOf, PointSpec};
 use crate::sweep::plan::memory;
 use crate::sweep::{CaseSpec, Plan};
 
-/// Roots of a point.
+/// Number of roots in the answer for a point.
 pub const ROOTS: u8 = 16;
 
-/// What is asked.
+/// The kind of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Request {
     /// Cells and curves of a sweep.
@@ -65,13 +66,13 @@ impl Request {
         }
     }
 
-    /// The request of that name.
+    /// The request with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|request| request.name() == name)
     }
 
-    /// Whether its answer is bytes as in [`super::encoded`]; else it is JSON.
+    /// Whether its answer is bytes as in [`super::encoded`]; otherwise it is JSON.
     #[must_use]
     pub const fn is_encoded(self) -> bool {
         matches!(self, Self::Chart | Self::Motion)
@@ -87,7 +88,7 @@ impl Request {
     }
 }
 
-/// How much an answer may take.
+/// Limits of what an answer may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Limits {
     /// A chart.
@@ -107,7 +108,7 @@ pub struct WithCommand<T> {
     pub command: Option<String>,
 }
 
-/// A request whose text was read, and is within limits.
+/// A request that has been read and is within limits.
 #[derive(Debug, Clone)]
 pub enum Asked {
     /// [`Request::Chart`].
@@ -128,7 +129,7 @@ impl Asked {
     /// Reads the text of a request.
     ///
     /// # Errors
-    /// When it is not understood, or asks for too much.
+    /// When it is not understood, or exceeds the limits.
     pub fn read(request: Request, text: &str, limits: &Limits) -> Result<Self, Problem> {
         let point = |of| PointSpec::read(text, of);
         Ok(match request {
@@ -141,8 +142,8 @@ impl Asked {
         })
     }
 
-    /// The bytes that the answer takes at most while it is computed and put into bytes, where they
-    /// are worth mentioning.
+    /// An upper bound on the bytes of the answer while it is computed and encoded; 0 where that is
+    /// negligible.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         match self {
@@ -153,15 +154,15 @@ impl Asked {
         }
     }
 
-    /// The bytes of the answer, of [`Request::content_type`]. Once `stop` is set it ends soon,
-    /// between steps of motions and tiles of charts.
+    /// The bytes of the answer, of [`Request::content_type`]. `stop` is checked between the steps
+    /// of a motion and the tiles of a chart.
     ///
     /// # Errors
-    /// When it cannot be computed, or was stopped.
+    /// When it cannot be computed, or is stopped.
     pub fn answer(&self, stop: &Arc<AtomicBool>) -> Result<Vec<u8>, Problem> {
         match self {
             Self::Chart(plan) => {
-                // There is no clock in WebAssembly.
+                // WebAssembly has no clock.
                 let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
                 let chart = Chart::of(plan, stop)?;
                 let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
@@ -197,7 +198,7 @@ impl Asked {
     }
 }
 
-/// The bytes of the answer to `request` about what `text` describes.
+/// The bytes of the answer to `request` for `text`.
 ///
 /// # Errors
 /// As [`Asked::read`] and [`Asked::answer`].
@@ -220,7 +221,7 @@ mod tests {
 
     const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
-    /// A long computation ends once its caller has gone.
+    /// A long computation ends once its caller is gone.
     #[test]
     fn a_stop_is_heeded() {
         let vc = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");

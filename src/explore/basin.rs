@@ -27,7 +27,7 @@ pub enum BasinError {
     Threads(#[from] RunError<Infallible>),
 }
 
-/// Starts that were followed.
+/// The outcomes of all starts.
 #[derive(Debug, Clone)]
 pub struct Followed {
     basin: Basin,
@@ -36,7 +36,8 @@ pub struct Followed {
 }
 
 impl Followed {
-    /// Follows the starts of a setting on `threads` threads; no bit depends on how many.
+    /// Follows the starts of a setting on `threads` threads. The result does not depend on their
+    /// number.
     ///
     /// # Errors
     /// See [`BasinError`].
@@ -59,13 +60,13 @@ impl Followed {
         })
     }
 
-    /// Where the starts lie.
+    /// The region of the starts.
     #[must_use]
     pub fn region(&self) -> Region {
         self.asked.region()
     }
 
-    /// Every start: ẋ and elongation, or the phase of switch-on and 0; and what became of it.
+    /// Every start, as ẋ and elongation or as the phase of switch-on and 0, with its outcome.
     pub fn starts(&self) -> impl Iterator<Item = (Place, [f64; 2], Outcome)> {
         let places = self.asked.places().zip(&self.outcomes);
         places.map(|(place, outcome)| (place, self.asked.start(place), *outcome))
@@ -123,7 +124,7 @@ pub struct OutcomeShare {
 }
 
 impl BasinShare {
-    /// Of starts that were followed.
+    /// The share, from starts that were followed.
     #[must_use]
     pub fn of(followed: &Followed) -> Self {
         let mut tally = Tally::default();

@@ -9,17 +9,17 @@ use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::plan::memory::Memory;
 use crate::sweep::{Plan, SpecError, SweepSpec};
 
-/// What the curves of a plane take, unless there are very many of them.
+/// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 1 << 20;
 
-/// How much a chart may take.
+/// Limits of a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// The most cells whose fields come from the closed form of a line.
     pub counted: u64,
     /// The most cells whose roots are followed.
     pub rooted: u64,
-    /// The most cells whose motion is followed, or whose critical velocity is looked for.
+    /// The most cells whose motion is followed, or whose critical velocity is computed.
     pub followed: u64,
     /// The most bytes of all cells.
     pub bytes: u64,
@@ -30,7 +30,7 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// What most often takes a second on one core at most.
+    /// Limits that usually keep a chart within a second on one core.
     fn default() -> Self {
         Self {
             counted: 4_000_000,
@@ -49,20 +49,20 @@ pub enum ChartError {
     /// The sweep is not understood.
     #[error(transparent)]
     Spec(#[from] SpecError),
-    /// It has more cells than a chart may have.
+    /// It has more cells than allowed.
     #[error("a chart of these fields has at most {most} cells, this one has {cells}")]
     TooManyCells {
         /// How many it has.
         cells: u64,
-        /// How many it may have.
+        /// How many are allowed.
         most: u64,
     },
-    /// It has curves in more planes than a chart may have.
+    /// It has curves in more planes than allowed.
     #[error("a chart has curves in at most {most} planes, this one in {planes}")]
     TooManyPlanes {
-        /// In how many it has them.
+        /// In how many planes.
         planes: u64,
-        /// In how many it may have them.
+        /// In how many planes they are allowed.
         most: u64,
     },
     /// It was stopped before it was complete.
@@ -78,16 +78,17 @@ pub enum ChartError {
 pub struct ChartCurve {
     /// σ: roots on the curve have Re λ = −σ.
     pub degree_of_stability: f64,
-    /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
+    /// The direction in which a pair crosses with increasing delay: −1 to the left, 0 touch, 1 to
+    /// the right.
     pub direction: i8,
-    /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
+    /// The side on which sliding is stable: −1 shorter delays, 0 neither, 1 longer delays.
     pub stable_side: i8,
     /// Parameter and delay, vertex by vertex.
     pub vertices: Vec<[f64; 2]>,
 }
 
 impl ChartCurve {
-    /// A curve as it was traced.
+    /// A traced curve.
     #[must_use]
     pub fn of(degree_of_stability: f64, piece: &CurvePiece) -> Self {
         Self {
@@ -109,10 +110,10 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// The sweep that `text` describes, if a chart may be as large.
+    /// Reads the sweep in `text`, if it is within the limits of a chart.
     ///
     /// # Errors
-    /// When the text is not understood, or it has too many cells or planes.
+    /// When the text is not understood, or has too many cells or planes.
     pub fn plan(text: &str, limits: Limits) -> Result<Arc<Plan>, ChartError> {
         let plan = Plan::new(SweepSpec::read(text, limits.points)?)?;
         let (cells, most) = (plan.cells(), limits.most(&plan));
@@ -126,10 +127,10 @@ impl Chart {
         Ok(Arc::new(plan))
     }
 
-    /// Computes it on this thread; a `stop` is heeded between tiles.
+    /// Computes the chart on this thread. `stop` is checked between tiles.
     ///
     /// # Errors
-    /// When it cannot be computed, or was stopped.
+    /// When it cannot be computed, or is stopped.
     pub fn of(plan: &Arc<Plan>, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
         let grid = Grid::compute_here(plan, stop).map_err(|error| match error {
             RunError::Interrupted => ChartError::Stopped,
@@ -164,7 +165,7 @@ impl Limits {
     }
 }
 
-/// The bytes that a chart of this sweep takes at most while it is computed and put into bytes.
+/// An upper bound on the bytes of a chart while it is computed and encoded.
 #[must_use]
 pub fn bytes(plan: &Plan) -> u64 {
     let cells = plan.cells() * plan.bytes_per_cell() + plan.boundary_planes() * BYTES_OF_CURVES;

@@ -58,7 +58,7 @@ pub struct CurveHead {
 }
 
 impl CurveHead {
-    /// Of a curve, whose vertices go to the arrays.
+    /// The head of a curve, whose vertices are added to the arrays.
     #[must_use]
     pub fn of(curve: &ChartCurve, arrays: &mut Arrays) -> Self {
         Self {
@@ -70,10 +70,10 @@ impl CurveHead {
     }
 }
 
-/// The bytes of a chart that took so long to compute, if that is known.
+/// The bytes of a chart; `milliseconds` is the time of its computation, if known.
 ///
 /// # Errors
-/// When its head is no JSON.
+/// When its head cannot be written as JSON.
 pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serde_json::Error> {
     let plan = chart.grid.plan();
     let units = &plan.spec.units;

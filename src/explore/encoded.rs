@@ -4,10 +4,10 @@
 //! length of the JSON, u32 | JSON | padding to a multiple of 8 | arrays, each padded likewise
 //! ```
 //!
-//! All numbers are little-endian, as browsers' typed arrays are on every machine that runs one. The
-//! JSON names each array with its type, its offset behind the padding and its length. Where equal
-//! numbers stand in a row, an array may be stored as `runs`: so many numbers, padded, and behind
-//! them as many u32, the places where each run ends.
+//! All numbers are little-endian, like the typed arrays of browsers on every machine that runs one.
+//! The JSON names each array with its type, its length and its offset, counted from the end of the
+//! padding. An array with many equal numbers in a row may be stored as `runs`: the numbers of the
+//! runs, padded, then as many u32, the places where each run ends.
 
 use serde::Serialize;
 
@@ -46,17 +46,17 @@ pub struct Array {
     runs: Option<usize>,
 }
 
-/// The arrays of an answer, one behind the other.
+/// The arrays of an answer, one after the other.
 #[derive(Debug, Default)]
 pub struct Arrays(Vec<u8>);
 
 impl Arrays {
-    /// Adds numbers as they are.
+    /// Adds numbers one by one.
     pub fn push<T: Element>(&mut self, numbers: impl IntoIterator<Item = T>) -> Array {
         let offset = self.0.len();
         let mut length = 0;
         let numbers = numbers.into_iter();
-        // Long arrays are not to take twice their room while they grow.
+        // Reserving exactly avoids that a long array takes twice its memory while it grows.
         self.0
             .reserve_exact(numbers.size_hint().0 * size_of::<T>() + ALIGNED);
         for number in numbers {
@@ -72,10 +72,10 @@ impl Arrays {
         }
     }
 
-    /// Adds numbers as runs of equal ones, or as they are where that is shorter.
+    /// Adds numbers as runs of equal ones, or one by one where that is shorter.
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
         let mut runs: Vec<(T, u32)> = Vec::new();
-        // A run takes its number and four bytes.
+        // A run takes one number and four bytes.
         let most = size_of_val(numbers) / (size_of::<T>() + 4);
         for run in numbers.chunk_by(|a, b| a == b) {
             if runs.len() >= most {
@@ -101,14 +101,14 @@ impl Arrays {
     /// The whole answer.
     ///
     /// # Errors
-    /// When the head is no JSON.
+    /// When the head cannot be written as JSON.
     pub fn behind(self, head: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
         let [mut bytes, arrays] = self.parts(head)?;
         bytes.extend(arrays);
         Ok(bytes)
     }
 
-    /// The whole answer in two parts, for answers too long to be copied.
+    /// The whole answer in two parts, for answers too long to copy.
     ///
     /// # Errors
     /// As [`Arrays::behind`].

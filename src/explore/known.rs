@@ -1,4 +1,4 @@
-//! What the program knows: its parameters, friction laws and fields, with all their facts.
+//! The parameters, friction laws and fields of the program, with all their facts.
 
 use serde::Serialize;
 
@@ -136,7 +136,7 @@ impl KnownLaw {
 }
 
 impl KnownField {
-    /// Of a field.
+    /// The facts about a field.
     #[must_use]
     pub fn of(field: Field) -> Self {
         Self {

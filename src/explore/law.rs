@@ -9,9 +9,9 @@ use crate::sweep::Parameter;
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::point_file::PointSpec;
 
-/// Speeds of a curve.
+/// Number of speeds on a curve.
 const SPEEDS: u32 = 201;
-/// How far a curve goes, in units of the law's own speed.
+/// The largest speed of a curve, in units of the law's own speed.
 const SCALES: f64 = 6.0;
 
 /// A friction law over speeds from 0 on, in the units of its setting.
@@ -51,7 +51,7 @@ pub struct LawPoint {
 }
 
 impl LawCurve {
-    /// Of a setting with a friction law.
+    /// The curve of a setting with a friction law.
     ///
     /// # Errors
     /// When it has none, or the law is ill-posed.
@@ -99,7 +99,7 @@ impl LawCurve {
     }
 }
 
-/// Where a curve ends: beyond what the law does by itself, and beyond v0.
+/// The largest speed of a curve: beyond the law's own scale, and beyond v0.
 fn last_speed(law: &FrictionLaw, v0: Option<f64>) -> f64 {
     let scale = law.speed_scale(0.0);
     let own = match law.kind() {

@@ -102,7 +102,7 @@ pub struct StabilityBox {
 }
 
 impl Margins {
-    /// At a setting with all its parameters, for a required decay rate of `decay` ≥ 0.
+    /// The margins of a setting with all its parameters, for a required decay rate of `decay` ≥ 0.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -118,15 +118,15 @@ impl Margins {
         Ok(margins)
     }
 
-    /// Of a system beyond the letter's, as far as its stability over the delay tells: at the delay
-    /// `tau`.
+    /// The margins of a general system at the delay `tau`, as far as they follow from its stability
+    /// over the delay.
     #[must_use]
     pub fn of_stability(stability: &Stability, tau: f64) -> Self {
         let mut margins = Self {
             decays: stability.stable,
             ..Self::lost(0.0)
         };
-        // That counts from no latency at all, whatever holds at the setting's own.
+        // This margin counts from no latency, whatever the setting's own latency is.
         let latency = stability.latencies.margin.unwrap_or(f64::NAN);
         margins.latency_margin = finite(latency);
         margins.note("latency_margin", &[latency]);
@@ -159,7 +159,7 @@ impl Margins {
         margins
     }
 
-    /// Where the setting has not the decay rate, nothing is left of any margin.
+    /// The margins of a setting without the decay rate: 0 or null.
     fn lost(required_decay: f64) -> Self {
         Self {
             required_decay,
@@ -203,7 +203,7 @@ impl Margins {
             self.note("mu_prime_margin", &ends);
             self.mu_prime_margin = Some(Margin::of(at, limits, f64::NEG_INFINITY));
         }
-        // Of infinite ends; NaN is told as undecided.
+        // Only for infinite ends; NaN is reported as undecided.
         let last = |end: f64, last: f64| finite(last).filter(|_| end == f64::INFINITY);
         let reach = around.reach();
         self.looked_up_to = LookedUpTo {
@@ -225,7 +225,8 @@ impl Margins {
 }
 
 impl Margin {
-    /// Nothing is lost at `least`, the lower end of the parameter's range.
+    /// A margin from limits. A lower limit at `least`, the lower end of the parameter's range,
+    /// loses nothing.
     fn of(at: f64, limits: Limits, least: f64) -> Self {
         let from = finite(limits.lower).filter(|from| *from > least);
         let to = finite(limits.upper);

@@ -1,24 +1,24 @@
-//! What is asked of slipmap at a point or in a plane, and answered at once: plain data in, plain
-//! data out. The command line, the server and a page without a server share it.
+//! Requests about a point or a plane that are answered at once: plain data in, plain data out. The
+//! command line, the server and the page without a server share them.
 //!
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
 //! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
 //!   [`along_delay`]: over its delays
-//! - [`system_point`]: the same of a system from a file
+//! - [`system_point`]: the same for a system from a file
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`known`]: all parameters, friction laws and fields
-//! - [`mod@answer`]: all of these by the names of requests; [`problem`]: what is told where there
-//!   is no answer
+//! - [`mod@answer`]: all of these by the names of requests; [`problem`]: the reply where there is
+//!   no answer
 //!
-//! Numbers that there are not are `null` in JSON, infinities among them.
+//! Missing numbers and infinities are `null` in JSON.
 //!
-//! - `answer`: every request by its name, its answer as bytes: what the server and the page without
-//!   one share
+//! - `answer`: every request by its name, with its answer as bytes: common to the server and the
+//!   page without one
 //! - `wasm`: the same as a WebAssembly module without imports
 
 pub mod along_delay;
@@ -43,7 +43,7 @@ pub mod wasm;
 pub use answer::{Asked, Limits, Request, answer};
 pub use problem::Problem;
 
-/// A number that JSON can tell.
+/// The value, if JSON can represent it.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

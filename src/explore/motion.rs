@@ -8,17 +8,17 @@ use crate::sweep::cells::trace::Sample;
 use crate::sweep::cells::trace::{TraceError, TraceEvent};
 use crate::sweep::{CaseSpec, Trace};
 
-/// How much a motion may take.
+/// Limits of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// The most samples, and events; where there are more of the former, they are thinned.
+    /// The most samples, beyond which they are thinned; and the most events.
     pub samples: usize,
     /// The most steps.
     pub steps: u64,
 }
 
 impl Default for Limits {
-    /// What takes some seconds at most.
+    /// Limits that keep a motion within a few seconds.
     fn default() -> Self {
         Self {
             samples: 20_000,
@@ -28,7 +28,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The most bytes that samples and events take, and the answer made of them.
+    /// An upper bound on the bytes of samples and events, and of the answer.
     #[must_use]
     pub const fn bytes(&self) -> u64 {
         (4 * self.samples * size_of::<Sample>()) as u64
@@ -38,10 +38,10 @@ impl Limits {
 /// Why there is no motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// It has more events than a motion may have.
+    /// It has more events than allowed.
     #[error("the motion has more than {0} events")]
     TooLong(usize),
-    /// It takes more steps than a motion may take.
+    /// It takes more steps than allowed.
     #[error("what becomes of the motion is not known after {0} steps")]
     TooManySteps(u64),
     /// It was stopped before it was complete.
@@ -62,10 +62,10 @@ pub struct Followed {
 }
 
 impl Followed {
-    /// Follows a case; a `stop` is heeded with every step.
+    /// Follows a case; `stop` is checked at every step.
     ///
     /// # Errors
-    /// When it takes too much, or was stopped.
+    /// When it exceeds the limits, or is stopped.
     pub fn of(case: &CaseSpec, limits: Limits, stop: &Stop) -> Result<Self, MotionError> {
         let mut spec = case.clone();
         let asked = spec.case.steps;
@@ -132,7 +132,7 @@ pub struct MotionEvent {
 }
 
 impl MotionSummary {
-    /// Of a trace.
+    /// The summary of a trace.
     #[must_use]
     pub fn of(trace: &Trace) -> Self {
         let summary = &trace.summary;
@@ -145,7 +145,7 @@ impl MotionSummary {
             outcome: summary.outcome.name(),
             decided: summary.decided,
             settle_time: summary.settle_time,
-            // Not −0.
+            // Avoids −0.
             n_min: summary.n_min + 0.0,
             peak_force: summary.peak,
             period: summary.period,
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(refused, MotionError::TooLong(10));
     }
 
-    /// A case that asks for few steps gets them; one that needs more than there may be is refused.
+    /// A case that asks for few steps gets them; one that needs more than the limit is refused.
     #[test]
     fn steps_have_an_end() {
         let limits = Limits {

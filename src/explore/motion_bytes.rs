@@ -8,7 +8,7 @@ use super::encoded::{Array, Arrays};
 use super::motion::{Followed, MotionSummary};
 use crate::sweep::cells::trace::{MODES, Sample};
 
-/// The command that gives the same.
+/// The command that repeats the motion.
 const SIMULATE: &str = "slipmap simulate case.toml";
 
 /// What a motion says before its numbers. Where units are given, `unit_t` and so on tell those of
@@ -73,7 +73,7 @@ const QUANTITIES: [Quantity; 6] = [
 /// The bytes of a motion.
 ///
 /// # Errors
-/// When its head is no JSON.
+/// When its head cannot be written as JSON.
 pub fn encoded(followed: &Followed) -> Result<Vec<u8>, serde_json::Error> {
     let (units, samples) = (&followed.spec.units, &followed.trace.samples);
     let mut arrays = Arrays::default();

@@ -35,7 +35,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// At a setting with all its parameters.
+    /// Linear stability of a setting with all its parameters.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.

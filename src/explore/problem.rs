@@ -1,4 +1,4 @@
-//! The answer to a request that cannot be answered: problem details (RFC 9457).
+//! The reply to a request that cannot be answered: problem details (RFC 9457).
 
 use serde::Serialize;
 
@@ -7,16 +7,16 @@ use super::motion::MotionError;
 use crate::model::ModelError;
 use crate::sweep::SpecError;
 
-/// Why there is no answer, as the status of HTTP and its usual title.
+/// Why there is no answer; determines the HTTP status and its usual title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
     /// The request is not understood, or cannot be computed.
     Unprocessable,
-    /// It asks for more than is computed at once.
+    /// It exceeds the limits.
     TooLarge,
-    /// Nobody waits for it any more, or somebody has to wait for others.
+    /// The client has gone, or too many requests wait.
     Unavailable,
-    /// The program is wrong.
+    /// A fault of the program.
     Fault,
 }
 
@@ -51,7 +51,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// With this detail.
+    /// A problem with this detail.
     #[must_use]
     pub fn new(why: Why, detail: impl Into<String>) -> Self {
         let (status, title) = why.status();
@@ -64,7 +64,7 @@ impl Problem {
         }
     }
 
-    /// With what could be done.
+    /// The same problem with a suggestion.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Problem {
         }
     }
 
-    /// It was stopped.
+    /// The problem of a computation that was stopped.
     #[must_use]
     pub fn stopped() -> Self {
         Self::new(Why::Unavailable, "stopped")

@@ -15,8 +15,8 @@ use crate::linear::{Crossings, Direction, MarginalTolerance};
 use crate::model::Groups;
 use crate::sweep::LinearModel;
 
-/// Near a tangency there can be millions of stable intervals; more than this are cut, and the
-/// answer says so.
+/// The most stable intervals. Near a tangency there can be millions; the answer says if some are
+/// left out.
 const MOST_INTERVALS: usize = 100_000;
 
 /// What there is to know of the stability of a linear model at a delay.
@@ -123,17 +123,17 @@ pub struct Spectrum {
     pub incomplete: bool,
 }
 
-/// What is asked of a linear model.
+/// A question about a linear model.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// The number of rightmost roots, 1 to 64.
     pub roots: u8,
-    /// Re λ of a line right of which roots are counted.
+    /// Re λ of a line to the right of which roots are counted.
     pub line: Option<f64>,
 }
 
 impl Stability {
-    /// Of a linear model with the unit of time `time_unit`, at the delay `tau`.
+    /// The stability of a linear model with the unit of time `time_unit`, at the delay `tau`.
     #[must_use]
     pub fn of(model: &LinearModel, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
         let mut stability = match model {
@@ -189,7 +189,7 @@ impl Stability {
         let count_right = |line: f64| counter.right_of(at, line * time_unit).finite();
         Self {
             n_unstable: count.map(|count| count.n_unstable),
-            // At ρ = 1 nothing decays at a rate of its own.
+            // At ρ = 1 roots accumulate at the imaginary axis: never exponentially stable.
             stable: stable_here && found.reason != Some(Reason::NeutralLimit),
             marginal: count.is_some_and(|count| count.marginal)
                 || found.reason == Some(Reason::RootAtOrigin),
@@ -212,7 +212,7 @@ impl Stability {
 }
 
 impl Latencies {
-    /// At the dimensionless delay `tau`.
+    /// The latencies at the dimensionless delay `tau`.
     fn of(system: &System, (tau, time_unit): (f64, f64)) -> Self {
         let Some(line) = DelayLine::of_latencies(system, tau) else {
             return Self::default();
@@ -236,12 +236,12 @@ fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
 fn sign(margin: f64) -> i8 {
     match margin {
         0.0 => 0,
-        // The cast takes NaN to 0.
+        // The cast turns NaN into 0.
         margin => margin.signum() as i8,
     }
 }
 
-/// The shortest delay at which a pair crosses, and by how much the count grows there.
+/// The shortest delay at which a pair crosses, and the change of the count there.
 fn first_crossing<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> Option<(f64, i8)> {
     crossings
         .filter(|c| c.direction != Direction::Touch)
@@ -316,8 +316,8 @@ impl Spectrum {
         }
     }
 
-    /// In units of time of which `time_unit` makes one dimensionless; `no_more` says why there may
-    /// be fewer roots than `wanted` though none is missing.
+    /// The roots in physical units, with the unit of time `time_unit`. `no_more` says why there may
+    /// be fewer roots than `wanted` although none is missing.
     fn of(
         found: &Listed,
         time_unit: f64,
@@ -350,7 +350,7 @@ impl Spectrum {
     }
 }
 
-/// Why there are fewer roots than asked for though none is missing.
+/// Why there are fewer roots than requested although none is missing.
 fn no_more(without_delay: bool, uncontrolled: bool) -> &'static str {
     match (without_delay, uncontrolled) {
         (true, _) => "there are no others: the delay is 0",

@@ -43,16 +43,16 @@ pub enum NoAnswer {
     /// An expression has no value.
     #[error(transparent)]
     Undefined(#[from] Undefined),
-    /// Nothing can be said of any delay.
+    /// The system is of a kind that is not answered at any delay.
     #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
     Refused,
 }
 
 impl SystemPoint {
-    /// At a setting.
+    /// Linear stability at a setting.
     ///
     /// # Errors
-    /// When an expression has no value there, or the system is one of those that are refused.
+    /// When an expression has no value there, or systems of this kind are refused.
     pub fn at(model: &SystemModel, at: &mut Evaluation, wanted: Wanted) -> Result<Self, NoAnswer> {
         let system = model.at(at)?;
         if system.class() == Class::Refused {
@@ -79,7 +79,7 @@ impl SystemPoint {
     }
 }
 
-/// Leaves what is true at the delay itself: at others P and Q are not the same.
+/// Keeps what holds at the delay itself: at other delays P and Q differ.
 fn forget_other_delays(stability: &mut Stability) {
     stability.stable_delays.clear();
     stability.stable_delays_truncated = false;

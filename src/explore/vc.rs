@@ -49,11 +49,11 @@ pub struct CriticalVelocity {
 }
 
 impl CriticalVelocity {
-    /// Of a setting, whose v0 means nothing. Once `stop` is set the answer comes soon and means
-    /// nothing.
+    /// The critical velocity of a setting; its v0 is ignored. Once `stop` is set, the answer comes
+    /// soon but is meaningless.
     ///
     /// # Errors
-    /// When the setting has no friction law, or a value is out of the model's range.
+    /// When the setting has no friction law, or a value is outside the model's range.
     pub fn of(setting: &Setting, protocol: Protocol, stop: &Stop) -> Result<Self, ModelError> {
         let found = vc::asked(setting)?.until(stop.clone()).find(protocol);
         let critical = found.critical;
@@ -92,7 +92,7 @@ impl ShortDelay {
     /// At γ > 0 and μ_K/μ_S in (0, 1].
     ///
     /// # Errors
-    /// When one of them is out of its range.
+    /// When one of them is outside its range.
     pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
         let found = LimitCell::at(gamma, mu_ratio)?;
         let fields = Field::ALL
@@ -110,7 +110,7 @@ impl ShortDelay {
     }
 }
 
-/// The fields are those of the table, so their schema is too.
+/// The schema is written by hand, since the fields come from a table.
 #[cfg(feature = "serve")]
 mod schema {
     use utoipa::openapi::schema::{Object, ObjectBuilder, SchemaType, Type};

@@ -1,12 +1,12 @@
 //! Requests and answers of a WebAssembly module without imports, for a page without a server.
 //!
 //! ```text
-//! at = allocate(bytes of a name and of a text behind it); write both there
+//! at = allocate(bytes of a name and of the text after it); write both there
 //! at = answer(bytes of the name); read length() bytes there, of the status status()
 //! release()
 //! ```
 //!
-//! One request after the other. Nothing stops one: whoever does not want to wait ends the module.
+//! There is one request at a time, and no way to stop it: to stop waiting, end the module.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use super::problem::{Problem, Why};
 use super::{Limits, Request};
 
-/// The status of answers that are no problem.
+/// The status of successful answers.
 const FOUND: u32 = 200;
 
 thread_local! {
@@ -23,7 +23,7 @@ thread_local! {
     static ANSWERED: RefCell<(u32, Vec<u8>)> = const { RefCell::new((0, Vec::new())) };
 }
 
-/// Makes room for a request of `length` bytes and gives its address.
+/// Allocates a request of `length` bytes and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn allocate(length: usize) -> *mut u8 {
     ASKED.with_borrow_mut(|asked| {
@@ -32,7 +32,7 @@ pub extern "C" fn allocate(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request, whose name takes so many bytes; where the answer is.
+/// Answers the request, whose name has `name` bytes. Returns the address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer(name: usize) -> *const u8 {
     let found = ASKED.with_borrow(|asked| answered(asked, name));
@@ -49,7 +49,7 @@ pub extern "C" fn answer(name: usize) -> *const u8 {
     })
 }
 
-/// The bytes of the answer.
+/// The number of bytes of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn length() -> usize {
     ANSWERED.with_borrow(|answered| answered.1.len())
@@ -61,7 +61,7 @@ pub extern "C" fn status() -> u32 {
     ANSWERED.with_borrow(|answered| answered.0)
 }
 
-/// Gives the memory of the request and of the answer back.
+/// Frees the memory of the request and of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn release() {
     ASKED.take();

@@ -1,10 +1,10 @@
-//! A claim of the letter, what the program finds instead of it, and the verdict.
+//! A claim of the letter, the result of the program beside it, and the verdict.
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// A number that the letter gives without an error is refined, not contradicted, up to this
-/// relative distance.
+/// The largest relative distance at which a number that the letter gives without an error counts as
+/// refined, not contradicted.
 const REFINED: f64 = 0.1;
 
 /// What a run says of a claim. The later, the worse.
@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Of a statement that holds or does not.
+    /// The verdict on a statement that holds or does not.
     #[must_use]
     pub fn of(holds: bool) -> Self {
         match holds {
@@ -29,7 +29,7 @@ impl Verdict {
         }
     }
 
-    /// Of a statement with several parts: `all` of them hold, or at least `most`.
+    /// The verdict on a statement with several parts: `all` of them hold, or at least `most`.
     #[must_use]
     pub fn of_parts(all: bool, most: bool) -> Self {
         match (all, most) {
@@ -39,7 +39,8 @@ impl Verdict {
         }
     }
 
-    /// Of a number that the letter rounds to a multiple of `unit`, compared with the number found.
+    /// The verdict on a number that the letter rounds to a multiple of `unit`, compared with the
+    /// number found.
     #[must_use]
     pub fn of_number(letter: f64, unit: f64, found: f64, error: f64) -> Self {
         let off = (found - letter).abs();
@@ -77,7 +78,7 @@ pub struct Value {
 }
 
 impl Value {
-    /// Without an error; infinite numbers and NaN are none.
+    /// A value without an error; infinite numbers and NaN become null.
     #[must_use]
     pub fn of(name: impl Into<String>, meaning: impl Into<String>, value: f64) -> Self {
         Self {
@@ -89,7 +90,7 @@ impl Value {
         }
     }
 
-    /// The same with an error.
+    /// The same value with an error.
     #[must_use]
     pub fn within(self, error: f64) -> Self {
         Self {
@@ -98,7 +99,7 @@ impl Value {
         }
     }
 
-    /// The same beside the letter's number.
+    /// The same value with the letter's number.
     #[must_use]
     pub fn beside(self, letter: f64) -> Self {
         Self {
@@ -107,7 +108,7 @@ impl Value {
         }
     }
 
-    /// The number for people: as many digits as its error leaves, eight at most.
+    /// The number for display: as many digits as its error allows, at most eight.
     #[must_use]
     pub fn shown(&self) -> String {
         let Some(value) = self.value else {
@@ -168,7 +169,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// A claim with its verdict, by which numbers it is judged to be added.
+    /// A claim with its verdict; the numbers behind it are added later.
     pub(super) fn new(
         name: &'static str,
         (place, quotation): (&'static str, &'static str),
@@ -189,19 +190,19 @@ impl Claim {
         }
     }
 
-    /// The same with numbers.
+    /// Adds numbers.
     pub(super) fn by(mut self, values: impl IntoIterator<Item = Value>) -> Self {
         self.values.extend(values);
         self
     }
 
-    /// The same, with a map or trace behind it; its command is added where that is made.
+    /// Adds the maps or traces behind the claim. Their commands are added when they are made.
     pub(super) fn from(mut self, figures: &[&'static str]) -> Self {
         self.evidence.extend(figures);
         self
     }
 
-    /// The same with a command that repeats part of it.
+    /// Adds a command that repeats a part of it.
     pub(super) fn repeat(mut self, command: &str) -> Self {
         self.commands.push(command.to_owned());
         self

@@ -1,7 +1,7 @@
 //! Where controls end: the slope beyond which velocity control fails, the weakest gains of load
 //! control, and short delays.
 //!
-//! Longer than most files: four claims, each with its evidence, what is said of it and its verdict.
+//! Longer than most files: four claims, each with its evidence, its text and its verdict.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
@@ -16,11 +16,10 @@ use crate::sweep::Field;
 const LOBES: Source = source!("velocity_limit");
 const BRACKET: Source = source!("velocity_limit_bracket");
 
-/// What the claims here are computed from.
+/// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 2] = [&LOBES, &BRACKET];
 
-/// What the letter says of the slope at which velocity control ends, in units of √(κM)/N0, and the
-/// last digit that it gives.
+/// The letter's slope at which velocity control ends, in units of √(κM)/N0, and its last digit.
 const LETTER: (f64, f64) = (-0.68, 0.01);
 
 /// The slope at which the last lobe of velocity control ends.
@@ -30,22 +29,23 @@ struct VelocityLimit {
     end: f64,
     /// Gain and delay there.
     place: (f64, f64),
-    /// Slopes of maps, and their stable cells.
+    /// Slopes of maps, and how many stable cells each has.
     cells: Vec<(f64, usize)>,
 }
 
-/// Of the tangency: its condition is solved to the last bits, its terms are of the order of 10.
+/// The error of the tangency: its condition is solved to the last bits, and its terms are of order
+/// 10.
 const TANGENCY_ERROR: f64 = 1e-13;
 
 impl VelocityLimit {
-    /// Slopes beyond b* at which a map has stable cells.
+    /// Number of slopes beyond b* at which a map has stable cells.
     fn stable_beyond(&self) -> usize {
         let beyond = self.cells.iter();
         let beyond = beyond.filter(|(b, cells)| *b < self.end && *cells > 0);
         beyond.count()
     }
 
-    /// The steepest slope with stable cells, and the flattest without.
+    /// The steepest slope with stable cells, and the flattest one without.
     fn bracket(&self) -> (f64, f64) {
         let with = self.cells.iter().filter(|(_, cells)| *cells > 0);
         let without = self.cells.iter().filter(|(_, cells)| *cells == 0);
@@ -55,7 +55,7 @@ impl VelocityLimit {
         )
     }
 
-    /// What the maps say of it.
+    /// The results of the maps, in words.
     fn maps(&self) -> String {
         let (with, without) = self.bracket();
         let agree = match self.stable_beyond() {
@@ -117,7 +117,7 @@ impl VelocityLimit {
     }
 }
 
-/// The weakest gains of load control that stabilise, at growing |b|.
+/// The weakest gains of load control that stabilise, for increasing |b|.
 #[derive(Debug, Clone, PartialEq)]
 struct LoadGains {
     rows: Vec<LoadGain>,
@@ -126,16 +126,16 @@ struct LoadGains {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct LoadGain {
     b: f64,
-    /// The weakest negative one, and whether some delay is stable right beyond it.
+    /// The weakest negative gain, and whether some delay is stable just beyond it.
     negative: f64,
     stable: bool,
-    /// The weakest positive one; infinite where none is found.
+    /// The weakest positive gain; infinite where none is found.
     positive: f64,
 }
 
-/// Beyond a gain by this share, delays are stable if they are at all.
+/// Relative distance beyond a gain at which a stable delay is searched for.
 const RIGHT_BEYOND: f64 = 1e-6;
-/// Slopes at which load control is looked at: from, to, how many, evenly in their logarithm.
+/// Slopes for load control: first, last, and number, evenly spaced in the logarithm.
 const SLOPES: (f64, f64, u32) = (0.01, 20.0, 400);
 
 impl LoadGains {
@@ -172,7 +172,7 @@ impl LoadGains {
         row.negative.abs().min(row.positive)
     }
 
-    /// At how many steps of the slope a gain grows.
+    /// Number of steps of the slope at which a gain increases.
     fn steps_up(&self, size: fn(&LoadGain) -> f64) -> usize {
         let pairs = self.rows.windows(2);
         pairs.filter(|pair| size(&pair[1]) > size(&pair[0])).count()
@@ -261,26 +261,26 @@ impl LoadGains {
 /// Short delays.
 #[derive(Debug, Clone, PartialEq)]
 struct ShortDelays {
-    /// Slopes, the shortest delay that velocity control stabilises at any gain, infinite where none
-    /// does, and its error.
+    /// Slopes, the shortest delay that velocity control stabilises at any gain (infinite where
+    /// there is none), and its error.
     velocity: Vec<(f64, f64, f64)>,
-    /// Slopes, delays, and the gain where load control begins to stabilise over the letter's.
+    /// Slopes, delays, and the gain from which load control stabilises, divided by the letter's.
     load: Vec<(f64, f64, f64)>,
 }
 
-/// Delays for the limit of load control, in units of √(M/κ), each a tenth of the one before.
+/// Delays for the limit of load control, in units of √(M/κ), each a tenth of the previous one.
 const SHORT: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 /// Gains tried at each slope, in each of three ranges.
 const GAINS: u32 = 20_000;
-/// Slopes at which they are.
+/// The slopes at which the gains are tried.
 const SHORT_SLOPES: [f64; 9] = [-0.005, -0.02, -0.05, -0.1, -0.2, -0.3, -0.5, -0.7, -1.0];
 
 impl ShortDelays {
-    /// The shortest delay that velocity control stabilises at any gain, and how far it moves with
-    /// twice as many gains.
+    /// The shortest delay that velocity control stabilises at any gain, and its change with twice
+    /// as many gains.
     fn shortest_at(b: f64) -> (f64, f64) {
-        // Beyond the last of these gains the lower crossing, by which roots go left, is gone;
-        // before the first one there is none.
+        // Between these gains there is a lower crossing, at which roots go to the left; outside
+        // them there is none.
         let (fold, last) = (0.5 * b - b * b * b / 8.0, 0.5 / b);
         let shortest = |gains: u32| {
             let share = |i: u32| f64::from(i) / f64::from(gains);
@@ -326,7 +326,7 @@ impl ShortDelays {
         }
     }
 
-    /// The least of those delays over its slope, |μ′|N0/κ, and its error.
+    /// The smallest of these delays divided by its slope, |μ′|N0/κ, and its error.
     fn least(&self) -> (f64, f64) {
         let ratios = self.velocity.iter();
         let ratios = ratios.map(|(b, tau, error)| (tau / b.abs(), error / b.abs()));
@@ -335,12 +335,13 @@ impl ShortDelays {
         })
     }
 
-    /// Every slope has a delay below which no gain stabilises, and not one that shrinks faster.
+    /// At every slope the shortest stabilised delay exceeds |b|: below it no gain stabilises, and
+    /// it does not shrink faster than |b|.
     fn velocity_verdict(&self) -> Verdict {
         Verdict::of(!self.velocity.is_empty() && self.least().0 > 1.0)
     }
 
-    /// How far the gain is from the letter's at a delay, at most.
+    /// The largest distance of the gain from the letter's at a delay.
     fn off(&self, at: f64) -> f64 {
         let there = self.load.iter().filter(|(_, tau, _)| *tau == at);
         there
@@ -348,7 +349,7 @@ impl ShortDelays {
             .fold(0.0, f64::max)
     }
 
-    /// The gain comes near the letter's at least in proportion to the delay.
+    /// The gain approaches the letter's at least in proportion to the delay.
     fn load_verdict(&self) -> Verdict {
         let off = SHORT.map(|tau| self.off(tau));
         let nearer = off.windows(2).all(|pair| pair[1] < 0.2 * pair[0]);
@@ -421,7 +422,7 @@ impl ShortDelays {
     }
 }
 
-/// Everything here.
+/// All claims of this file.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     let mut cells = Vec::new();
     for source in [&LOBES, &BRACKET] {
@@ -471,7 +472,7 @@ mod tests {
         assert_eq!(of(-0.8, &[(-0.79, 7), (-0.81, 0)]), Verdict::Contradicted);
     }
 
-    /// What is said beside a verdict is what was found.
+    /// The text beside a verdict states what was found.
     #[test]
     fn texts_follow_from_the_numbers() {
         let limit = |cells: &[(f64, usize)]| VelocityLimit {

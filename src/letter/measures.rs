@@ -1,4 +1,4 @@
-//! Measures of how robust the linear stability of a control is.
+//! Measures of the robustness of the linear stability under a control.
 
 use crate::linear::Crossings;
 use crate::linear::lobes::LobeControl;
@@ -6,24 +6,24 @@ use crate::linear::margins::{self, Margins, Setting};
 use crate::model::Groups;
 use crate::model::known_cases::letter_fig3;
 
-/// One measure of how robust a control is, of both controls.
+/// A measure of robustness, for both controls.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Measure {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its meaning.
     pub meaning: &'static str,
-    /// That of velocity control, and of load control.
+    /// Its values for velocity control and for load control.
     pub velocity: f64,
     pub load: f64,
-    /// More of it is more robust.
+    /// Whether larger values are more robust.
     pub more: bool,
     /// Its relative error.
     pub error: f64,
 }
 
 impl Measure {
-    /// Whether load control is the more robust one by it.
+    /// Whether load control is the more robust one by this measure.
     pub(super) fn load_wins(&self) -> bool {
         match self.more {
             true => self.load > self.velocity,
@@ -32,12 +32,13 @@ impl Measure {
     }
 }
 
-/// Gains of two decades, evenly in their logarithm; delays up to a period of free oscillation.
+/// Gains over two decades, evenly spaced in the logarithm; delays up to a period of free
+/// oscillation.
 const GAINS: u32 = 2000;
 const DELAYS: (f64, f64) = (0.1, 6.3);
 
-/// The share of the logarithms of gains and delays that is stable at a slope, and the widest
-/// stable interval of delays as their ratio.
+/// At a slope: the stable share of the plane of the logarithms of gain and delay, and the widest
+/// stable interval of delays, as the ratio of its ends.
 fn stable_share(groups: impl Fn(f64) -> Groups) -> (f64, f64) {
     let all = (DELAYS.1 / DELAYS.0).ln();
     let (mut stable, mut widest) = (0.0, 1.0_f64);
@@ -92,7 +93,7 @@ pub(super) fn linear_measures() -> Vec<Measure> {
     measures
 }
 
-/// Margins of the settings of Fig. 3.
+/// Margins at the settings of Fig. 3.
 fn margins_at_fig3() -> [Measure; 4] {
     let mut searches = Margins::default();
     let of = letter_fig3().map(|case| {
@@ -146,10 +147,11 @@ fn margins_at_fig3() -> [Measure; 4] {
     })
 }
 
-/// The number of gains, and of delays, at which margins are computed.
+/// Number of gains, and number of delays, at which margins are computed.
 const PLACES: u32 = 48;
 
-/// The largest phase and latency margin of any gain and delay of the box, at a slope.
+/// The largest phase margin and the largest latency margin over the box of gains and delays, at a
+/// slope.
 fn largest_margins(b: f64) -> [Measure; 2] {
     let mut searches = Margins::default();
     let mut largest = |groups: fn(f64, f64) -> Groups| {
@@ -195,7 +197,8 @@ fn largest_margins(b: f64) -> [Measure; 2] {
 mod tests {
     use super::*;
 
-    /// Those of Fig. 3 as they are known; those of boxes at least as large as at a setting in them.
+    /// Margins at Fig. 3 have their known values; those of the boxes are at least as large as the
+    /// margins of settings inside.
     #[test]
     fn margins_are_those_of_the_settings() {
         let at = margins_at_fig3();
@@ -211,7 +214,7 @@ mod tests {
             largest.iter().all(|m| m.velocity > 0.1 && m.load > 0.1),
             "{largest:?}"
         );
-        // No velocity control is stable at this slope.
+        // At this slope velocity control is never stable.
         assert_eq!(largest_margins(-0.8).map(|m| m.velocity), [0.0; 2]);
     }
 }

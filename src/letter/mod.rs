@@ -1,5 +1,5 @@
 //! The letter, reproduced: every claim of F.-J. Elmer, *Controlling friction* (1997), computed
-//! again, with a verdict that follows from what was computed.
+//! again, with a verdict that follows from the results.
 //!
 //! ```text
 //! sweeps and cases → [workshop] maps, traces, pictures → evidence: plain numbers
@@ -7,15 +7,15 @@
 //! ```
 //!
 //! - `stability`, `limits`: linear stability, the letter's Fig. 2; where controls end, short delays
-//! - `roots`: characteristic roots, their bounds and how fast they decay
-//! - `motions`: the motions of its Fig. 3, what becomes of stick-slip, basins
-//! - `robustness`, `measures`: critical velocities at finite delays; both controls compared
-//! - `short_delay`: Coulomb friction as the delay vanishes, its Fig. 4
+//! - `roots`: characteristic roots: their number, bounds and decay
+//! - `motions`: the motions of its Fig. 3, the fate of stick-slip, basins
+//! - `robustness`, `measures`: critical velocities at finite delays; comparison of both controls
+//! - `short_delay`: Coulomb friction in the limit of a vanishing delay, its Fig. 4
 //!
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
-//! them: the same numbers, the same verdict.
+//! them: equal numbers give equal verdicts.
 //!
-//! - `claim`: a claim, the values that it is judged by, its verdict
+//! - `claim`: a claim, the values by which it is judged, its verdict
 //! - `page`: the page; the only file that imports maud
 //! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
 //!   and read
@@ -68,7 +68,7 @@ pub enum LetterError {
         /// What is wrong.
         error: SpecError,
     },
-    /// A file with this name is there that this run did not make.
+    /// There is already a file with this name that this run did not make.
     #[error("{} is already there, and not of this run", path.display())]
     Foreign {
         /// The file.
@@ -157,7 +157,7 @@ pub fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterError> {
 }
 
 impl Reproduction {
-    /// How many claims have a verdict.
+    /// Number of claims with a verdict.
     #[must_use]
     pub fn with(&self, verdict: Verdict) -> usize {
         let same = self.claims.iter().filter(|claim| claim.verdict == verdict);

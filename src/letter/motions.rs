@@ -1,4 +1,4 @@
-//! Motions: the letter's Fig. 3, what becomes of stick-slip elsewhere, and basins of attraction.
+//! Motions: the letter's Fig. 3, the fate of stick-slip elsewhere, and basins of attraction.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
@@ -29,7 +29,7 @@ const BASIN_B: Source = source!(
     quick: [("points = 76", "points = 26"), ("points = 81", "points = 27")]
 );
 
-/// What the claims here are computed from.
+/// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 6] = [
     &FIG3A,
     &FIG3B,
@@ -42,11 +42,12 @@ pub(super) const SOURCES: [&Source; 6] = [
 /// A panel of Fig. 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Motion {
-    /// Unstable roots there, the spectral abscissa, and the bound on what lies farther right.
+    /// The number of unstable roots, the spectral abscissa, and the bound on roots farther right.
     unstable: u64,
     abscissa: f64,
     margin: f64,
-    /// Sticks before the control begins to act, and when the last one behind it ends.
+    /// The number of sticks before control begins to act, and the time when the last one after that
+    /// ends.
     sticks_before: usize,
     last_release: f64,
     outcome: Outcome,
@@ -121,7 +122,7 @@ impl Motion {
     }
 }
 
-/// Both panels: sliding is stable there.
+/// The verdict on stability of sliding at both panels.
 fn stable_there(panels: &[Motion; 2]) -> Verdict {
     Verdict::of(panels.iter().all(Motion::stable))
 }
@@ -152,7 +153,7 @@ fn stability(panels: &[Motion; 2]) -> Claim {
         )
 }
 
-/// How many cells of a map come to each outcome.
+/// How many cells of a map have each outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Outcomes([usize; Outcome::ALL.len()]);
 
@@ -165,7 +166,7 @@ impl Outcomes {
         Ok(found)
     }
 
-    /// Those of the cells in which sliding is stable.
+    /// The outcomes of the cells in which sliding is stable.
     fn where_stable(map: &MapFile) -> Result<Self, LetterError> {
         let unstable = column(map, Field::NUnstable)?;
         let outcomes = column(map, Field::Outcome)?;
@@ -202,13 +203,13 @@ impl Outcomes {
 struct NotDestroyed {
     /// Over all gains and delays.
     outcomes: Outcomes,
-    /// Of cells in which sliding is stable, most of them in a lobe that is looked at by itself.
-    /// Only there can a motion that is not exceptional come to slide.
+    /// The cells in which sliding is stable. Most of them are in a lobe with a map of its own. Only
+    /// there can motions other than exceptional ones end in sliding.
     stable: Outcomes,
 }
 
-/// So many cells in which sliding is stable are asked for, of each hundred of them at most so many
-/// undecided.
+/// The fewest cells with stable sliding that are required, and the most undecided ones per hundred
+/// of them.
 const STABLE_CELLS: (usize, usize) = (50, 1);
 
 impl NotDestroyed {
@@ -222,7 +223,8 @@ impl NotDestroyed {
         let decided =
             100 * self.stable.number(Outcome::Undecided) <= undecided * self.stable.cells();
         let looked_at = self.stable.cells() >= least && decided;
-        // What slides where sliding is unstable, or in few cells, needs exceptional settings.
+        // Motions that end in sliding where sliding is unstable, or in few cells, need exceptional
+        // settings.
         let some = self.stable.number(Outcome::Sliding);
         Verdict::of_parts(
             looked_at && slid == 0 && stick_slip,
@@ -281,7 +283,7 @@ struct Basins {
     load: Outcomes,
 }
 
-/// A basin that holds this share of the window of uncontrolled stick-slip is quite large.
+/// The share of the window of uncontrolled stick-slip from which a basin counts as quite large.
 const QUITE_LARGE: f64 = 0.5;
 
 impl Basins {
@@ -330,7 +332,7 @@ impl Basins {
     }
 }
 
-/// Everything here.
+/// All claims of this file.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     let [a, b] = [shop.motion(&FIG3A)?, shop.motion(&FIG3B)?];
     let panels = [Motion::of(&a.0, &a.1)?, Motion::of(&b.0, &b.1)?];
@@ -417,7 +419,7 @@ mod tests {
         assert_eq!(verdict((0, 1000), (3, 200)), Verdict::Refined);
         assert_eq!(verdict((50, 1000), (0, 200)), Verdict::Contradicted);
         assert_eq!(verdict((0, 1000), (60, 140)), Verdict::Contradicted);
-        // Nothing is confirmed where sliding is stable in hardly any cell, or much is undecided.
+        // Nothing is confirmed where sliding is stable in too few cells, or too many are undecided.
         assert_eq!(verdict((0, 1000), (0, 1)), Verdict::Contradicted);
         assert_eq!(verdict((0, 0), (0, 0)), Verdict::Contradicted);
         let mut open = of((0, 1000), (0, 200));

@@ -1,17 +1,17 @@
-//! The letter and what was found as one page of HTML: styles and pictures are part of it, nothing
-//! is loaded, no script is run. The only file that imports maud.
+//! The letter and the results as one page of HTML. Styles and pictures are part of it; nothing is
+//! loaded and no script is run. The only file that imports maud.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Claim, Figure, Reproduction, Verdict};
 
-/// What such a page says in its head of who made it.
+/// The generator named in the head of the page.
 pub const GENERATOR: &str = "slipmap reproduce";
 
 const STYLE: &str = include_str!("page.css");
 
 impl Reproduction {
-    /// The page. `made`: by which program and when, in one line; `quick`: from coarser maps.
+    /// The page. `made`: the program and time, in one line; `quick`: whether maps are coarser.
     #[must_use]
     pub fn page(&self, made: &str, quick: bool) -> String {
         let verdicts = [Verdict::Confirmed, Verdict::Refined, Verdict::Contradicted];
@@ -51,7 +51,7 @@ impl Reproduction {
         page.into_string()
     }
 
-    /// All claims in a table, with what says most of each.
+    /// All claims in a table, each with its most telling value.
     fn contents(&self) -> Markup {
         html! {
             h2 { "Claims" }
@@ -125,7 +125,7 @@ impl Reproduction {
         }
     }
 
-    /// The claim under which a figure stands: the one that rests on it most.
+    /// The claim under which a figure is shown: the one that rests on it most.
     fn home(&self, figure: &Figure) -> &'static str {
         let first = |claim: &&Claim| claim.evidence.first() == Some(&figure.name);
         let any = |claim: &&Claim| claim.evidence.contains(&figure.name);

@@ -1,5 +1,5 @@
-//! Critical velocities at finite delays, the rule of thumb on times, and both controls beside one
-//! another.
+//! Critical velocities at finite delays, the rule of thumb on times, and a comparison of both
+//! controls.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
@@ -18,7 +18,7 @@ const SMOOTH: Source = source!(
     "velocity_smooth",
     quick: [("points = 13", "points = 7"), ("points = 17", "points = 9")]
 );
-/// Of the three slopes at rest only that of the letter's law.
+/// Only the slope at rest of the letter's law, of the three in the sweep.
 const VELOCITY: Source = source!(
     "robust_velocity",
     always: [("[-0.5, -1.0, -2.0]", "[-1.0]")],
@@ -30,10 +30,10 @@ const LOAD: Source = source!(
     quick: [("points = 31", "points = 11")]
 );
 
-/// What the claims here are computed from.
+/// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 3] = [&SMOOTH, &VELOCITY, &LOAD];
 
-/// v_c is as exact as an end that starts from its neighbour's orbit.
+/// The relative error of v_c, that of an end found from a neighbour's orbit.
 const VC_ERROR: f64 = 1e-4;
 
 /// The letter's friction law under control.
@@ -51,14 +51,14 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64, stop: &Stop) -> Result<Problem,
     })
 }
 
-/// How long the letter's block sticks without control, over how long it slips.
+/// The time that the letter's block sticks without control, divided by the time that it slips.
 fn stick_over_slip(v0: f64) -> Result<f64, LetterError> {
     let problem = letters(0.0, 0.0, 0.0, &Stop::default())?;
     let cycle = after_release(&problem.at(v0, 0.0), Accuracy::default(), 0.0);
     Ok(cycle.map_or(f64::NAN, |(_, cycle)| cycle.stick_time / cycle.slip_time))
 }
 
-/// v_c at the settings of Fig. 3, beside the velocities used there.
+/// v_c at the settings of Fig. 3, with the velocities used there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AtFig3 {
     vc: [f64; 2],
@@ -98,24 +98,25 @@ impl AtFig3 {
     }
 }
 
-/// Of the same order: within a factor of √10.
+/// Numbers within this factor, √10, are of the same order.
 const SAME_ORDER: f64 = 3.162_277_660_168_379_5;
 
-/// Stick time over slip time of the uncontrolled block.
+/// Stick time divided by slip time of the uncontrolled block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RuleOfThumb {
     /// The lowest velocity that velocity control makes smooth, with its gain and delay.
     lowest: f64,
     at: (f64, f64),
-    /// The ratio there, where load control makes the velocity smooth in Fig. 3(b)'s setting, and at
-    /// Fig. 3(a) and (b).
+    /// The ratio at this velocity, at the velocity that load control makes smooth in the setting of
+    /// Fig. 3(b), and at Fig. 3(a) and (b).
     velocity: f64,
     load: f64,
     fig3: [f64; 2],
 }
 
 impl RuleOfThumb {
-    /// Velocity control needs sticks no longer than that, load control does not.
+    /// Velocity control needs stick times of at most the order of slip times, load control does
+    /// not.
     fn verdict(&self) -> Verdict {
         let short = self.velocity.max(self.fig3[0]);
         Verdict::of_parts(
@@ -158,7 +159,7 @@ impl RuleOfThumb {
     }
 }
 
-/// Both controls beside one another.
+/// The comparison of both controls.
 #[derive(Debug, Clone, PartialEq)]
 struct LessRobust {
     measures: Vec<Measure>,
@@ -215,7 +216,7 @@ impl LessRobust {
     }
 }
 
-/// v_smooth of a cell, NaN where it is not decided, and its gain and delay.
+/// v_smooth of a cell, NaN where undecided, with its gain and delay.
 type Smooth = (f64, (f64, f64));
 
 /// The cells of a map.
@@ -240,7 +241,7 @@ fn share(cells: &[Smooth], v0: f64) -> f64 {
     cells.iter().filter(|(smooth, _)| *smooth <= v0).count() as f64 / cells.len() as f64
 }
 
-/// The lowest of them.
+/// The cell with the lowest v_smooth.
 fn lowest(cells: &[Smooth]) -> Smooth {
     let none = (f64::INFINITY, (f64::NAN, f64::NAN));
     cells
@@ -252,7 +253,7 @@ fn lowest(cells: &[Smooth]) -> Smooth {
         })
 }
 
-/// Everything here.
+/// All claims of this file.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     shop.step("critical velocities at Fig. 3")?;
     let stop = shop.stop();

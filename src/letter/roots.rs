@@ -1,5 +1,4 @@
-//! Characteristic roots: without control, their number and bounds, where they cross, how fast they
-//! decay.
+//! Characteristic roots: sliding without control, their number and bounds, crossings, decay.
 
 use num_complex::Complex64;
 
@@ -16,7 +15,8 @@ use crate::model::Groups;
 use crate::sweep::cells::best::{best_settings, default_ranges};
 use crate::sweep::{Parameter, Setting};
 
-/// Settings with unstable roots, by a sequence that fills the box evenly (Halton).
+/// Numbers of settings for the claims on unstable roots, points of a Halton sequence, which fills
+/// the box evenly; the second number is for a quick run.
 const SETTINGS: [u32; 2] = [20_000, 2_000];
 
 /// Setting number `i`, a point of the Halton sequence: b, a_v, a_n, τ.
@@ -41,20 +41,22 @@ fn place(i: u32) -> Place {
     )
 }
 
-/// What is found at those settings.
+/// The results for those settings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct UnstableRoots {
     settings: u32,
-    /// Settings at which the exact count, the argument principle and the roots found agree.
+    /// Number of settings at which the exact count, the argument principle and the roots found
+    /// agree.
     agree: u32,
-    /// The most unstable roots.
+    /// The largest number of unstable roots.
     most: u64,
     /// The largest |λ| of an unstable root over its bound.
     nearest: f64,
-    /// Crossings of those settings, and the largest |D(iω)| at one over the size of its terms.
+    /// The number of crossings, and the largest |D(iω)| at one, divided by the magnitude of its
+    /// terms.
     crossings: u32,
     residual: f64,
-    /// The settings of these three.
+    /// The settings with the largest number, the nearest root and the largest residual.
     most_at: Option<Place>,
     nearest_at: Option<Place>,
     residual_at: Option<Place>,
@@ -63,7 +65,7 @@ struct UnstableRoots {
 /// Groups and delay of a setting.
 type Place = (Groups, f64);
 
-/// The command that tells the characteristic roots of a setting.
+/// The command that prints the characteristic roots of a setting.
 fn command(at: Option<Place>, roots: u64) -> Option<String> {
     let (Groups { b, a_v, a_n }, tau) = at?;
     Some(format!(
@@ -173,7 +175,7 @@ impl UnstableRoots {
     }
 }
 
-/// Sliding without control: unstable roots at falling and at rising friction laws.
+/// Sliding without control: unstable roots for decreasing and for increasing friction laws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Uncontrolled {
     weakening: u64,
@@ -218,7 +220,8 @@ struct Relaxation {
     lines: Vec<Line>,
 }
 
-/// The regions of one sign of the gain at one slope: delay and relaxation time of the best setting.
+/// The regions of one sign of the gain at one slope: delay and relaxation time of each best
+/// setting.
 #[derive(Debug, Clone, PartialEq)]
 struct Line {
     what: &'static str,
@@ -258,7 +261,8 @@ impl Relaxation {
         Ok(Self { lines })
     }
 
-    /// Whether regions at longer delays relax more slowly, throughout or at least than the first.
+    /// Whether relaxation is slower in each region at longer delays than in the previous one, or at
+    /// least than in the first.
     fn verdict(&self) -> Verdict {
         let slower = |line: &Line| line.best.windows(2).all(|pair| pair[1].1 > pair[0].1);
         let first = |line: &Line| {
@@ -306,7 +310,7 @@ impl Relaxation {
     }
 }
 
-/// What gains of a control are called, and whether they are positive.
+/// Names of the signs of the gain, and whether each is positive.
 fn names(gain: SearchedGain) -> [(&'static str, bool); 2] {
     match gain {
         SearchedGain::Velocity => [
@@ -317,7 +321,7 @@ fn names(gain: SearchedGain) -> [(&'static str, bool); 2] {
     }
 }
 
-/// Everything here.
+/// All claims of this file.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     shop.step("characteristic roots")?;
     let mut claims = vec![Uncontrolled::found().claim()];

@@ -1,4 +1,4 @@
-//! Coulomb friction under load control as the delay vanishes: the letter's Fig. 4.
+//! Coulomb friction under load control in the limit of a vanishing delay: the letter's Fig. 4.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
@@ -12,17 +12,17 @@ use crate::sweep::Field;
 
 const FIG4: Source = source!("fig4");
 
-/// What the claims here are computed from.
+/// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 1] = [&FIG4];
 
 /// μ_K/μ_S of Fig. 4.
 const RATIO: f64 = 0.5;
-/// Delays for the approach to the limit, in units of √(M/κ).
+/// Delays approaching the limit, in units of √(M/κ).
 const DELAYS: [f64; 3] = [0.02, 0.01, 0.005];
-/// The values of γ that are tried.
+/// The values of γ.
 const GAMMAS: [f64; 6] = [0.05, 0.15, 0.3, 0.55, 0.7, 0.85];
 
-/// The oscillator of Fig. 4 at a delay, with M = κ = N0 = μ_S = 1: there ṽ = 1/2.
+/// The oscillator of Fig. 4 at a delay, with M = κ = N0 = μ_S = 1, so that ṽ = 1/2.
 fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
     Ok(Problem {
         law: FrictionLaw::coulomb(RATIO, 1.0)?,
@@ -37,10 +37,10 @@ fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
     })
 }
 
-/// v_c/ṽ by the closed form, and by motions at finite delays as these vanish.
+/// v_c/ṽ by the closed form, and by motions at decreasing delays.
 #[derive(Debug, Clone, PartialEq)]
 struct Limit {
-    /// γ, v_c/ṽ at the delays, the closed form.
+    /// γ, v_c/ṽ at each delay, and the closed form.
     rows: Vec<(f64, [f64; DELAYS.len()], f64)>,
 }
 
@@ -63,14 +63,14 @@ impl Limit {
         })
     }
 
-    /// What v_c comes to as the delay vanishes, from the last two delays, less the closed form.
+    /// The largest error of v_c extrapolated from the last two delays, against the closed form.
     fn off(&self) -> f64 {
         let rows = self.rows.iter();
         let off = rows.map(|(_, at, exact)| (2.0 * at[2] - at[1] - exact).abs());
         off.fold(0.0, worst)
     }
 
-    /// Over the last delay, how far v_c is from the closed form there.
+    /// The largest error of v_c at the last delay, divided by this delay.
     fn rate(&self) -> f64 {
         let rows = self.rows.iter();
         let off = rows.map(|(_, at, exact)| (at[2] - exact).abs() / DELAYS[2]);
@@ -113,7 +113,7 @@ impl Limit {
     }
 }
 
-/// The larger one; NaN if one is.
+/// The larger number; NaN if one is NaN.
 fn worst(one: f64, other: f64) -> f64 {
     if one > other || one.is_nan() {
         one
@@ -122,11 +122,11 @@ fn worst(one: f64, other: f64) -> f64 {
     }
 }
 
-/// An approximation of v_c near an end of γ: relative errors, ever nearer to the end.
+/// An approximation of v_c near an end of γ: its relative errors, in order towards the end.
 #[derive(Debug, Clone, PartialEq)]
 struct Approximation {
     errors: Vec<(f64, f64)>,
-    /// The range of γ, on the map, in which the approximation is good to 10 %; none if nowhere.
+    /// The range of γ on the map in which the approximation is good to 10 %; none if there is none.
     good: Option<(f64, f64)>,
 }
 
@@ -162,7 +162,7 @@ impl Approximation {
             .map_or(f64::NAN, |(_, error)| error.abs())
     }
 
-    /// It becomes exact: its error vanishes towards the end.
+    /// The approximation becomes exact: its error vanishes towards the end.
     fn verdict(&self) -> Verdict {
         let pairs = self.errors.windows(2);
         let falls = pairs.clone().all(|pair| pair[1].1.abs() < pair[0].1.abs());
@@ -201,10 +201,10 @@ struct Cells {
     liftoff: Vec<f64>,
 }
 
-/// v0 at which the block lifts off, over v_c.
+/// v0 at which the block lifts off, divided by v_c.
 #[derive(Debug, Clone, PartialEq)]
 struct LiftOff {
-    /// The smallest ratio on the curves of Fig. 4, and wherever else it was looked at.
+    /// The smallest ratio on the curves of Fig. 4, and the smallest one at all settings.
     on_curve: f64,
     anywhere: f64,
     looked_at: usize,
@@ -261,11 +261,11 @@ impl LiftOff {
 struct Overdamped {
     /// γ, and v_c/ṽ by the closed form.
     limit: Vec<(f64, f64)>,
-    /// γ, τ, and v_c by motions; NaN where it is not decided.
+    /// γ, τ, and v_c by motions; NaN where undecided.
     motions: Vec<(f64, f64, f64)>,
-    /// The closed form right before γ = 1.
+    /// The closed form just before γ = 1.
     before: f64,
-    /// The most unstable roots of sliding under Coulomb friction and negative load gain.
+    /// The most unstable roots of sliding with Coulomb friction and a negative load gain.
     unstable: u64,
 }
 
@@ -298,7 +298,7 @@ impl Overdamped {
         Verdict::of_parts(limit && motions && before, limit && before)
     }
 
-    /// Also motions at finite delays end for every velocity.
+    /// At some finite delay, too, stick-slip ends at every velocity.
     fn arbitrarily_small(&self) -> Verdict {
         Verdict::of(self.motions.iter().any(|(_, _, vc)| *vc == 0.0))
     }
@@ -366,7 +366,7 @@ impl Overdamped {
     }
 }
 
-/// Everything here.
+/// All claims of this file.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     let map = shop.map(&FIG4)?;
     let cells = Cells {

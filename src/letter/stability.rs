@@ -11,7 +11,7 @@ use crate::sweep::Field;
 const FIG2A: Source = source!("fig2a");
 const FIG2B: Source = source!("fig2b");
 
-/// What the claims here are computed from.
+/// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 2] = [&FIG2A, &FIG2B];
 
 /// The stable region at one slope of the friction law, within a window of gains and delays.
@@ -19,13 +19,13 @@ pub(super) const SOURCES: [&Source; 2] = [&FIG2A, &FIG2B];
 struct Region {
     /// μ′.
     mu_prime: f64,
-    /// Stable cells.
+    /// Number of stable cells.
     cells: usize,
     /// Their area, in units of gain and delay.
     area: f64,
-    /// The same from the closed form of all stable delays at each gain.
+    /// The same area from the closed form of all stable delays at each gain.
     exact: f64,
-    /// The fewest unstable roots without gain.
+    /// The smallest number of unstable roots without gain.
     uncontrolled: f64,
 }
 
@@ -35,7 +35,7 @@ struct Panel {
     regions: Vec<Region>,
 }
 
-/// Which control a map is of.
+/// The control of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Control {
     Velocity,
@@ -52,7 +52,7 @@ impl Control {
 }
 
 impl Panel {
-    /// Of a map over the slope, the gain and the delay.
+    /// The panel of a map over the slope, the gain and the delay.
     fn of(map: &MapFile, control: Control) -> Result<Self, LetterError> {
         let mut regions = Vec::new();
         for (outer, plane) in planes(map, Field::NUnstable)? {
@@ -82,7 +82,7 @@ impl Panel {
         Ok(Self { regions })
     }
 
-    /// Every region has stable cells, and no sliding is stable without gain.
+    /// Every region has stable cells, and sliding without gain is never stable.
     fn verdict(&self) -> Verdict {
         let worked = |region: &&Region| region.cells > 0 && region.uncontrolled > 0.0;
         let all = self.regions.iter().filter(worked).count();

@@ -21,21 +21,21 @@ use crate::sweep::events::Attended;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::{CaseSpec, Field, Plan, SweepSpec, Trace};
 
-/// A sweep or a case behind claims.
+/// The sweep or case behind a claim.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source {
     /// The name of its file in `sweeps`.
     pub name: &'static str,
     /// The text of that file.
     pub text: &'static str,
-    /// What is replaced in it, since the whole would take too long for a page.
+    /// Replacements in the text, because the whole would take too long for a page.
     pub always: &'static [(&'static str, &'static str)],
-    /// What is replaced in it in a quick run.
+    /// Further replacements in a quick run.
     pub quick: &'static [(&'static str, &'static str)],
 }
 
 impl Source {
-    /// The text that is run.
+    /// The text after replacements.
     fn text(&self, quick: bool) -> String {
         let replaced = self.always.iter();
         let replaced = replaced.chain(self.quick.iter().filter(|_| quick));
@@ -84,28 +84,28 @@ pub struct Figure {
     pub svg: String,
 }
 
-/// How the letter is reproduced.
+/// The settings and results of a reproduction of the letter.
 pub struct Workshop<'a> {
-    /// The folder that maps, traces, sweeps and pictures are made in.
+    /// The folder in which maps, traces, sweeps and pictures are made.
     pub folder: &'a Path,
-    /// Whether that stays.
+    /// Whether the folder is kept.
     pub kept: bool,
-    /// Coarser maps: about a minute on two cores.
+    /// Whether to use coarser maps: about a minute on two cores.
     pub quick: bool,
-    /// Threads that compute.
+    /// Number of computing threads.
     pub threads: usize,
     /// Who makes the maps.
     pub provenance: &'a Provenance,
-    /// Who follows the run, and what stops it.
+    /// Who observes the run, and what stops it.
     pub attended: Attended<'a>,
-    /// Is told of each step.
+    /// Receives a message for each step.
     pub tell: &'a dyn Fn(&str),
-    /// The maps and traces that were made so far, by name.
+    /// The maps and traces made so far, by name.
     pub(super) made: BTreeMap<&'static str, Figure>,
 }
 
 impl<'a> Workshop<'a> {
-    /// A workshop in a folder, which nothing was made in yet.
+    /// A workshop in a folder, with nothing made yet.
     #[must_use]
     pub fn new(
         (folder, kept): (&'a Path, bool),
@@ -127,12 +127,12 @@ impl<'a> Workshop<'a> {
         }
     }
 
-    /// Ends motions and searches when the run ends.
+    /// A flag that ends motions and searches when the run ends.
     pub(super) fn stop(&self) -> Stop {
         Stop::when(self.attended.stop)
     }
 
-    /// Tells of a step, if the run goes on.
+    /// Reports a step, unless the run is stopped.
     pub(super) fn step(&self, what: &str) -> Result<(), LetterError> {
         if self.stop().is_set() {
             return Err(LetterError::Stopped);
@@ -181,10 +181,10 @@ impl<'a> Workshop<'a> {
         Ok((spec, trace))
     }
 
-    /// The place of the file of a source, and whether it is there already.
+    /// The path of the file of a source, and whether the file already exists.
     ///
     /// # Errors
-    /// When another file of that name is, or the map or the picture that belongs to such a file.
+    /// When another file has this name, or has the name of the map or picture that belongs to it.
     fn place(&self, source: &Source) -> Result<(PathBuf, bool), LetterError> {
         let path = self.folder.join(format!("{}.toml", source.name));
         let text = source.text(self.quick);
@@ -196,7 +196,7 @@ impl<'a> Workshop<'a> {
         }
     }
 
-    /// Looks whether files can be made from all these sources.
+    /// Checks that files can be made from all these sources.
     ///
     /// # Errors
     /// When a name is taken by another file.
@@ -205,7 +205,7 @@ impl<'a> Workshop<'a> {
         places.try_for_each(|place| place.map(drop))
     }
 
-    /// Writes the text of a source into the folder; the name of its map or trace.
+    /// Writes the text of a source into the folder. Returns the path of its map or trace.
     fn written(&self, source: &Source, text: &str) -> Result<PathBuf, LetterError> {
         let (path, same) = self.place(source)?;
         if !same {
@@ -214,7 +214,7 @@ impl<'a> Workshop<'a> {
         Ok(path.with_extension("h5"))
     }
 
-    /// Takes note of what was made.
+    /// Records a finished map or trace.
     fn keep(
         &mut self,
         source: &Source,
@@ -246,12 +246,12 @@ impl<'a> Workshop<'a> {
     }
 }
 
-/// Whether anything has that name.
+/// Whether anything has this name.
 fn there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// A map that is there is replaced only if it is one of the same sweep.
+/// Checks that an existing map may be replaced: it must be one of the same sweep.
 fn replaceable(path: &Path, plan: &Plan) -> Result<(), LetterError> {
     if !there(path) {
         return Ok(());
@@ -303,7 +303,7 @@ pub(super) fn column(map: &MapFile, field: Field) -> Result<Vec<f64>, LetterErro
 mod tests {
     use crate::letter::{limits, motions, robustness, short_delay, stability};
 
-    /// What is replaced stands there, and what is left is a sweep or a case.
+    /// The replaced text occurs in each source, and the result is a sweep or a case.
     #[test]
     fn every_source_is_read_in_full_and_quick() {
         let sources = [

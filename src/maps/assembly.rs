@@ -1,4 +1,4 @@
-//! From the pieces of a sweep to its map.
+//! Assembles a map from the pieces of a sweep.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,39 +13,38 @@ use crate::sweep::cells::boundaries::plane;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::Piece;
 
-/// What to do where pieces are missing.
+/// What to do when pieces are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Missing {
     /// Write no map.
     Refuse,
-    /// Leave fill values, and say so in the map.
+    /// Write fill values, and record in the map how many cells are missing.
     Leave,
 }
 
-/// What a map was put together from.
+/// What a map was assembled from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Assembled {
-    /// Crossing curves and those of degrees of stability.
+    /// Number of crossing curves and of curves of degrees of stability.
     pub curves: u64,
-    /// Where they meet.
+    /// Number of corners, where two curves meet.
     pub corners: u64,
-    /// Planes that lack curves because too many cross them.
+    /// Planes of which some curves are left out, because too many cross them.
     pub planes_left_out: u64,
     /// Planes with best settings.
     pub best_planes: u64,
-    /// Pieces that are not there.
+    /// Number of missing pieces.
     pub pieces_missing: u64,
-    /// Cells that are not there.
+    /// Number of missing cells.
     pub cells_missing: u64,
 }
 
-/// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers:
-/// equal pieces make equal files.
+/// Writes the map of `plan` from the pieces of `source`, in the order of their numbers. Equal
+/// pieces make equal files.
 ///
 /// # Errors
-/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when
-/// the system or the library refuses; nothing then stands under the map's name that was not there
-/// before.
+/// When it is stopped, a piece is damaged, a piece is missing and `missing` refuses that, or the
+/// system or the library refuses. The map's name then has what it had before.
 pub fn assemble(
     plan: &Plan,
     output: Output,

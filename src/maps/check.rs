@@ -1,4 +1,4 @@
-//! What other methods say of a map, and whether it is as it was written.
+//! Checks whether a map is as it was written, and what other methods give for samples of its cells.
 
 use crate::linear::status::{DISAGREE, FLAGS};
 use crate::store::sample::sample;
@@ -20,13 +20,13 @@ pub use crate::store::soundness::Report;
 /// How much of a map is computed again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Cells at which second methods look.
+    /// Number of cells checked by a second method.
     pub cells: u64,
-    /// Tiles that are computed again, bit by bit.
+    /// Number of tiles that are computed again and compared bit by bit.
     pub tiles: u64,
 }
 
-/// The program that runs.
+/// The running program.
 #[derive(Debug, Clone, Copy)]
 pub struct Program<'a> {
     /// Its version.
@@ -54,7 +54,7 @@ pub fn check(map: &MapFile, program: Program, effort: Effort) -> Result<Report, 
             .remarks
             .push(format!("{missing} cells are not computed yet"));
     }
-    // Values of a map whose bytes are wrong are not worth a look.
+    // If its bytes are wrong, there is no point in checking the values of a map.
     if report.faults.is_empty() {
         check_statuses(map, &mut report)?;
         check_summaries(map, &mut report)?;
@@ -104,7 +104,7 @@ fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> 
     Ok(())
 }
 
-/// Whether the map tells of its fields what values their cells have.
+/// Checks the summaries of the map's fields against their cells.
 fn check_summaries(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
     for &field in map.fields() {
         if map.summary_of_cells(field)? != map.summary(field)? {
@@ -188,7 +188,7 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
     for sample in 0..tiles.min(plan.tiles.len() as u64) {
         let number = (spread(sample) * plan.tiles.len() as f64) as usize;
         let tile = plan.tiles.tile(number);
-        // The status says whether a tile is in a map that is not complete.
+        // In a partial map the status shows whether it has the tile.
         if map.is_partial() && matches!(map.stored_chunk(STATUS, &tile.offset), Ok(None)) {
             report.tiles_absent += 1;
             continue;

@@ -1,4 +1,5 @@
-//! Whether a trace is what its case comes to: the motion computed again, compared bit by bit.
+//! Checks whether a trace follows from its case: computes the motion again and compares it bit by
+//! bit.
 
 use super::check::Program;
 use crate::store::TraceFile;
@@ -7,28 +8,28 @@ use crate::store::trace_file::{QUANTITIES, TIME, numbers_of_case};
 use crate::sweep::cells::trace::{Sample, TraceEvent};
 use crate::sweep::{Parameter, Trace};
 
-/// By how much values may differ where another revision of the program computed them, as a part of
-/// the largest of their kind. The same revision gives the same bits.
+/// The largest difference allowed if another revision of the program computed the values, as a
+/// share of the largest one of their kind. The same revision gives the same bits.
 const OF_REVISIONS: f64 = 1e-6;
 
-/// What was found out about a trace.
+/// The result of checking a trace.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceReport {
     /// Everything that is wrong, in words; empty for a sound trace.
     pub faults: Vec<String>,
-    /// Remarks besides.
+    /// Other remarks.
     pub remarks: Vec<String>,
-    /// Samples of the motion that was computed again.
+    /// Number of samples of the motion computed again.
     pub samples: u64,
-    /// Those of them that are in the trace, bit by bit.
+    /// How many of them equal those of the trace, bit by bit.
     pub samples_equal: u64,
-    /// Events of the motion that was computed again.
+    /// Number of events of the motion computed again.
     pub events: u64,
-    /// Those of them that are in the trace, bit by bit.
+    /// How many of them equal those of the trace, bit by bit.
     pub events_equal: u64,
 }
 
-/// Computes the motion of a trace again and compares everything that the trace holds of it.
+/// Computes the motion of a trace again and compares it with everything stored in the trace.
 #[must_use]
 pub fn check_trace(file: &TraceFile, program: Program) -> TraceReport {
     let mut report = TraceReport::default();
@@ -55,7 +56,7 @@ pub fn check_trace(file: &TraceFile, program: Program) -> TraceReport {
     report
 }
 
-/// The parameters in the file, and what else stands there of its case, are those of its text.
+/// Checks the parameters and other attributes of the case in the file against its text.
 fn check_parameters(file: &TraceFile, report: &mut TraceReport) {
     let setting = &file.spec.setting;
     let held = |p: &Parameter| setting.uses(*p) && !p.of_start();
@@ -73,12 +74,12 @@ fn check_parameters(file: &TraceFile, report: &mut TraceReport) {
     }
 }
 
-/// Whether two values are the same, or closer than `room`.
+/// Whether two values are equal, or differ by less than `room`.
 fn same(found: f64, expected: f64, room: f64) -> bool {
     found.to_bits() == expected.to_bits() || (found - expected).abs() < room
 }
 
-/// The values of a quantity, as they are in the file and as they come out again.
+/// The values of a quantity in the file, and the values computed again.
 struct Compared<'a> {
     name: &'static str,
     found: Vec<f64>,
@@ -87,8 +88,8 @@ struct Compared<'a> {
 }
 
 impl Compared<'_> {
-    /// Places at which they differ; those by more than the part `room` of the largest value are a
-    /// fault.
+    /// The places where they differ. Differences by more than the share `room` of the largest value
+    /// are a fault.
     fn differences(&self, of: &str, room: f64, report: &mut TraceReport) -> Vec<usize> {
         let largest = self
             .expected
@@ -110,7 +111,7 @@ impl Compared<'_> {
     }
 }
 
-/// As many of both; says so where they are not.
+/// Checks that there are equally many of both.
 fn as_many(of: &str, found: usize, expected: usize, report: &mut TraceReport) {
     if found != expected {
         let fault = format!("it has {found} {of}, its motion has {expected}");
@@ -118,7 +119,7 @@ fn as_many(of: &str, found: usize, expected: usize, report: &mut TraceReport) {
     }
 }
 
-/// Places that are equal in all that is compared, of `count`.
+/// How many of `count` places are equal in everything compared.
 fn equal(count: usize, differences: &[Vec<usize>]) -> u64 {
     let mut differ: Vec<usize> = differences.concat();
     differ.sort_unstable();

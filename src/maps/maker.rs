@@ -1,5 +1,4 @@
-//! From a plan to its map: pieces that are not on disk yet are computed, then the map is put
-//! together.
+//! From a plan to its map: computes the pieces that are not on disk yet, then assembles the map.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,16 +20,16 @@ use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Order, Piece, Shard, Todo};
 use crate::sweep::{RunError, engine};
 
-/// How a sweep is run.
+/// The options of a run.
 #[derive(Debug, Clone)]
 pub struct Job<'a> {
     /// The map's name.
     pub map: &'a Path,
-    /// Threads that compute.
+    /// Number of computing threads.
     pub threads: usize,
-    /// In which order.
+    /// The order of the pieces.
     pub order: Order,
-    /// How often what is computed is saved.
+    /// The time between two saves of computed pieces.
     pub save_every: Duration,
     /// Who makes the map.
     pub provenance: &'a Provenance,
@@ -50,14 +49,15 @@ impl<'a> Job<'a> {
     }
 }
 
-/// How often damage that shows only while a map is put together is mended.
+/// How often damage that is found only while a map is assembled is repaired.
 const MOST_REPAIRS: u32 = 3;
 
-/// Computes what the tiles beside the map lack, puts the map together, and removes the tiles.
+/// Computes the pieces that the tiles beside the map lack, assembles the map, and removes the
+/// tiles.
 ///
 /// # Errors
-/// See [`RunError`] and [`StoreError`]. Tiles that are finished stay, so that the next call goes on
-/// from there.
+/// See [`RunError`] and [`StoreError`]. Finished tiles stay, so that the next call continues from
+/// there.
 pub fn make(
     plan: &Arc<Plan>,
     job: &Job,
@@ -92,7 +92,7 @@ pub fn make(
     }
 }
 
-/// Computes what the tiles of one shard lack.
+/// Computes the pieces that the tiles of one shard lack.
 ///
 /// # Errors
 /// As [`make`].
@@ -106,26 +106,26 @@ pub fn make_shard(
     compute(plan, job, shard, &mut folder, attended)
 }
 
-/// What is merged.
+/// The options of a merge.
 #[derive(Debug, Clone, Copy)]
 pub struct Merge<'a> {
     /// The folders of shards.
     pub folders: &'a [PathBuf],
     /// The map to write.
     pub map: &'a Path,
-    /// What to do where pieces are missing.
+    /// What to do when pieces are missing.
     pub missing: Missing,
-    /// A complete map is replaced by one that lacks pieces.
+    /// Whether a complete map may be replaced by one that lacks pieces.
     pub replace_complete: bool,
-    /// The map beside which the folders are, where they are to be removed once a complete one is
+    /// The map beside which the folders are, if they are to be removed after a complete map is
     /// written.
     pub remove_beside: Option<&'a Path>,
 }
 
-/// Puts a map together from the folders of its shards.
+/// Assembles a map from the folders of its shards.
 ///
 /// # Errors
-/// When it is to stop, a piece is missing and has to be there, folders do not belong together, or
+/// When it is stopped, a piece is missing and that is refused, folders do not belong together, or
 /// the system refuses.
 pub fn merge(
     plan: &Plan,
@@ -173,23 +173,23 @@ pub fn merge(
     Ok(assembled)
 }
 
-/// Whether a complete map is at `path`; if a hash is given, the map of that plan.
+/// Whether a complete map is at `path`; with a hash, the map of that plan.
 ///
 /// # Errors
-/// When something is there that cannot be read as a map: whether it is one is not known then.
+/// When the file there cannot be read as a map: it might still be one.
 pub fn is_complete(path: &Path, plan_hash: Option<&str>) -> Result<bool, StoreError> {
     if !path.exists() {
         return Ok(false);
     }
     let map = MapFile::open(path)?;
     let of_plan = plan_hash.is_none_or(|hash| {
-        // Marks of earlier programs are empty.
+        // Earlier programs wrote an empty mark.
         hash.is_empty() || map.root_text(root::PLAN_HASH).as_deref() == Some(hash)
     });
     Ok(of_plan && !map.is_partial())
 }
 
-/// Computes a map without leaving anything beside it: for small ones.
+/// Computes a small map without leaving anything beside it.
 ///
 /// # Errors
 /// As [`make`].
@@ -244,7 +244,8 @@ fn compute(
     engine::run(plan, todo, job.threads, folder, attended)
 }
 
-/// The end of a run by an error, or by a stop while files were read or written.
+/// The error of a run that ended by an error of the store, or by a stop while files were read or
+/// written.
 fn ended(error: StoreError) -> RunError<StoreError> {
     match error {
         StoreError::Stopped => RunError::Interrupted,

@@ -1,10 +1,10 @@
-//! From a plan to its map, and whether a map is true.
+//! From a plan to its map, and checks of a map.
 //!
-//! - [`maker`]: computes what is missing, and puts the map together; shards, and their merge
-//! - [`assembly`]: from pieces to a map
-//! - [`check`]: whether a map is as it was written, and what other methods say of it
-//! - [`check_trace`]: whether a trace is what its case comes to
-//! - [`look`]: a map that is looked at, window by window
+//! - [`maker`]: computes what is missing and assembles the map; shards, and their merge
+//! - [`assembly`]: assembles a map from pieces
+//! - [`check`]: whether a map is as it was written, and what other methods give for its cells
+//! - [`check_trace`]: whether a trace follows from its case
+//! - [`look`]: interactive display of a map, window by window
 
 pub mod assembly;
 pub mod check;

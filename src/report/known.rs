@@ -1,4 +1,4 @@
-//! What is known in the cells that a picture shows: a value, or why there is none to show.
+//! The cells of a picture: each has a value, or a reason why it shows none.
 
 use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use crate::slip::outcome::Outcome;
@@ -10,24 +10,25 @@ use crate::sweep::input::field::OUTCOMES;
 use crate::sweep::input::regime_at_v0::RegimeAtV0;
 use crate::sweep::input::source::Source;
 
-/// Why a cell shows no value. The first four are not known, whatever number the map holds.
+/// Why a cell shows no value. With the first four its value is not known, whatever number the map
+/// has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Gap {
     /// Its computation did not converge.
     NotConverged,
     /// Two methods disagree about it.
     Disagree,
-    /// It lies within rounding of a change.
+    /// It lies within rounding of a boundary.
     Marginal,
-    /// The field itself says that it is undecided.
+    /// The field itself is undecided there.
     Undecided,
-    /// The load reaches 0 first.
+    /// The normal load reaches 0 first.
     LiftsOff,
     /// Stick-slip persists at the largest velocity that was tried.
     Persists,
-    /// There is none.
+    /// The field has no value there.
     NoValue,
-    /// The map is not complete.
+    /// The cell is not computed yet.
     NotComputed,
 }
 
@@ -45,7 +46,7 @@ impl Gap {
         Self::NotComputed,
     ];
 
-    /// True where there is an answer that is not known.
+    /// Whether an answer exists but is not known.
     pub(super) const fn is_unknown(self) -> bool {
         matches!(
             self,
@@ -53,7 +54,7 @@ impl Gap {
         )
     }
 
-    /// What a legend says of it in a picture of `field`.
+    /// Its words in the legend of a picture of `field`.
     #[cfg(feature = "picture")]
     pub(super) fn words(self, field: Field) -> &'static str {
         match self {
@@ -75,17 +76,17 @@ impl Gap {
     }
 }
 
-/// A plane of a field, and what of it is no value.
+/// A plane of a field, with the cells that have no value to show.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Known {
-    /// The numbers that the map holds.
+    /// The numbers of the map.
     pub(super) plane: Plane,
-    /// Why each cell is not shown; none where it is.
+    /// Why a cell is not shown; none where it is.
     pub(super) gaps: Vec<Option<Gap>>,
 }
 
 impl Known {
-    /// The plane that [`MapFile::plane`] gives, with what the statuses say of its cells.
+    /// The plane that [`MapFile::plane`] gives, with gaps from the statuses of its cells.
     ///
     /// # Errors
     /// When the map cannot be read.
@@ -123,7 +124,7 @@ impl Known {
         Ok(Self { plane, gaps })
     }
 
-    /// The values that are shown.
+    /// The values of the cells that are shown.
     #[cfg(feature = "picture")]
     pub(super) fn values(&self) -> impl Iterator<Item = f64> {
         let cells = self.plane.cells.iter().zip(&self.gaps);
@@ -133,7 +134,7 @@ impl Known {
     }
 }
 
-/// The field of the map that says why another one has no value.
+/// The field of the map that says why a cell of another field has no value.
 fn why_field(map: &MapFile, field: Field) -> Option<Field> {
     let held = |field: &Field| map.fields().contains(field);
     let asked = match field {
@@ -145,7 +146,7 @@ fn why_field(map: &MapFile, field: Field) -> Option<Field> {
     by_outcome.or(by_velocity).filter(|_| asked)
 }
 
-/// Why a cell has no value where the field that says so has this one.
+/// The gap of a cell without a value, from the value of the field that says why.
 fn ended(told_by: Field, value: f64) -> Option<Gap> {
     if told_by == Field::VLiftoff {
         return (!value.is_nan()).then_some(Gap::LiftsOff);
@@ -158,11 +159,11 @@ fn ended(told_by: Field, value: f64) -> Option<Gap> {
 }
 
 fn kind_name(number: f64) -> Option<&'static str> {
-    // NaN would be 0.
+    // The cast would turn NaN into 0.
     (number >= 0.0).then(|| OUTCOMES.get(number as usize).copied())?
 }
 
-/// Why the number `value` of a cell of this status is not to be shown.
+/// Why the number `value` of a cell with this status is not shown; none where it is.
 fn gap(field: Field, value: f64, status: u8, with_roots: bool) -> Option<Gap> {
     if status == STATUS_FILL {
         return Some(Gap::NotComputed);
@@ -185,8 +186,9 @@ fn gap(field: Field, value: f64, status: u8, with_roots: bool) -> Option<Gap> {
     .or(value.is_nan().then_some(Gap::NoValue))
 }
 
-/// The flags of a status by which a field is not known; `open`: it holds no answer. One status
-/// speaks for all fields of a cell: what is certified of its roots is no matter of theirs.
+/// The flags of a status with which a value of the field is not known; `open`: the field has no
+/// answer. The status is shared by all fields of a cell, so flags of roots do not concern the
+/// others.
 fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
     let of_count = match field.tells_stable(0.0) {
         Some(_) => MARGINAL,
@@ -198,19 +200,19 @@ fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
         Source::Line if with_roots && !certified => of_count | DISAGREE,
         Source::Line => of_count,
         Source::Linear(_) => 0,
-        // A radius that is not tight is proved all the same.
+        // A radius that is not tight is proved nevertheless.
         Source::Margins(_) if open => of_count | NOT_CONVERGED,
         Source::Margins(_) => of_count,
         Source::Roots(_) if certified => of_count,
         Source::Roots(_) => of_count | NOT_CONVERGED | DISAGREE,
-        // Where v_c is not decided, its bounds may decide this.
+        // Where v_c is undecided, its bounds may still decide the regime.
         Source::Critical(_) if field == Field::Regime && !open => DISAGREE,
         Source::Critical(_) if field == Field::Regime => DISAGREE | NOT_CONVERGED | MARGINAL,
-        // They are what is known where v_c is not.
+        // The bounds are known even where v_c is not.
         Source::Critical(_) if matches!(field, Field::VcLower | Field::VcUpper) && !open => {
             DISAGREE
         }
-        // It is what is known where the share is not.
+        // The error and the upper bound are known even where the share is not.
         Source::Basin(_) if field != Field::BasinShare => DISAGREE,
         Source::Motion(_)
         | Source::MotionOrCritical(..)
@@ -255,7 +257,7 @@ mod tests {
         assert_eq!(of(Field::Vc, 0.0, STATUS_FILL), Some(Gap::NotComputed));
     }
 
-    /// Disagreement of the roots with the closed form is one about the count, too.
+    /// If the roots disagree with the closed form, the count is in dispute too.
     #[test]
     fn counts_are_known_where_roots_agree() {
         let of = |status, with_roots| gap(Field::NUnstable, 2.0, status, with_roots);

@@ -1,4 +1,4 @@
-//! The log of a run: one JSON object a line, in a file beside the map.
+//! The log of a run: one JSON object per line, in a file beside the map.
 
 use std::cell::{Cell, RefCell};
 use std::fs::{File, OpenOptions};
@@ -25,7 +25,7 @@ pub struct LogLine {
     pub entry: Entry,
 }
 
-/// What a line tells.
+/// The contents of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Entry {
@@ -57,17 +57,17 @@ pub enum Entry {
         cells_computed: u64,
         /// Cells that the run has still to compute.
         cells_left: u64,
-        /// Since its start, on average.
+        /// Average since the start of the run.
         cells_per_second: f64,
     },
-    /// Everything that this run had to compute is computed.
+    /// Everything that this run had to do is computed.
     Finished {
         /// How many cells that were.
         cells_computed: u64,
         /// How long it took.
         seconds: f64,
     },
-    /// The run ended before that.
+    /// The run ended before it was finished.
     Ended {
         /// Why.
         why: String,
@@ -76,8 +76,7 @@ pub enum Entry {
     },
 }
 
-/// Writes the log of one run. A log that cannot be written is missed by nobody but its reader: the
-/// run goes on.
+/// Writes the log of one run. A log that cannot be written does not stop the run.
 pub struct Log {
     file: RefCell<Option<File>>,
     shard: Shard,
@@ -101,11 +100,11 @@ pub fn path(map: &Path, shard: Shard) -> PathBuf {
 }
 
 impl Log {
-    /// A log beside `map`, appended to if it is there.
+    /// A log beside `map`; an existing one is appended to.
     #[must_use]
     pub fn beside(map: &Path, shard: Shard) -> Self {
         let path = path(map, shard);
-        // A link or a folder by that name is left alone.
+        // A link or a folder with this name is left alone.
         let regular = path.symlink_metadata().map_or(true, |m| m.is_file());
         let open = || {
             OpenOptions::new()
@@ -125,9 +124,9 @@ impl Log {
         }
     }
 
-    /// The run ends before its time.
+    /// Records that the run ended before it was finished.
     pub fn ended(&self, why: &str) {
-        // One that was refused has no part in the story.
+        // A run that was refused at the start is not logged.
         if !self.begun.get() {
             return;
         }
@@ -144,7 +143,7 @@ impl Log {
         };
         let mut file = self.file.borrow_mut();
         let text = serde_json::to_string(&line).unwrap_or_default();
-        // One write a line: two runs do not mix theirs.
+        // One write per line, so that two runs do not mix their lines.
         let written = file
             .as_mut()
             .map(|file| file.write_all(format!("{text}\n").as_bytes()));
@@ -202,7 +201,7 @@ impl Observer for Log {
     }
 }
 
-/// Progress on the terminal and the log.
+/// Sends events both to the terminal and to the log.
 pub struct Both<'a>(pub &'a Progress, pub &'a Log);
 
 impl Observer for Both<'_> {

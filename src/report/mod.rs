@@ -1,13 +1,13 @@
-//! What a person sees: progress, summaries, pictures, tables.
+//! Output for people: progress, summaries, pictures, tables.
 //!
-//! - `known`: of each cell that a picture shows: its value, or why there is none to show
-//! - `log`: the log of a run, one JSON object a line, beside the map
-//! - `numbers`: numbers as people read them
+//! - `known`: for each cell of a picture its value, or why it shows none
+//! - `log`: the log of a run, one JSON object per line, beside the map
+//! - `numbers`: numbers in forms for people
 //! - `picture`: pictures of maps (PNG, SVG, PDF) with a font of their own
 //! - `preview`: a small map in the terminal
 //! - `progress`: bar or plain lines; the only file that imports indicatif
 //! - `table`: tables as text: names, numbers, comments; the only room that imports csv
-//! - `visible`: control characters spelled out, before a text reaches a terminal
+//! - `visible`: makes control characters visible before a text reaches a terminal
 
 mod known;
 #[cfg(feature = "cli")]

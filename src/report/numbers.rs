@@ -1,18 +1,18 @@
-//! Numbers as people read them.
+//! Numbers in forms for people.
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// The largest time that has four digits for the year, in seconds since 1970.
+/// The last second of the year 9999, in seconds since 1970.
 const LAST_SECOND: u64 = 253_402_300_799;
 
-/// A time that can be written as text: one from 1970 to the end of 9999, whatever the clock says.
+/// The time nearest to `time` that can be written as text: from 1970 to the end of 9999.
 #[must_use]
 pub fn representable(time: SystemTime) -> SystemTime {
     let last = UNIX_EPOCH + Duration::from_secs(LAST_SECOND);
     time.clamp(UNIX_EPOCH, last)
 }
 
-/// A count with thin groups of three: 8 658 009.
+/// A count with thin spaces between groups of three digits: 8 658 009.
 #[must_use]
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
@@ -55,7 +55,7 @@ pub fn bytes(n: u64) -> String {
     }
 }
 
-/// Seconds as people say them: "0.12 s", "3 min 20 s", "5 h 12 min".
+/// A duration in readable units: "0.12 s", "3 min 20 s", "5 h 12 min".
 #[must_use]
 pub fn seconds(s: f64) -> String {
     let whole = s.round() as u64;
@@ -79,15 +79,15 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A number with at most so many digits behind its first one: nine in all are the same on every
-/// machine.
+/// A number with at most `digits` digits after its first one. Nine digits in all are the same on
+/// every machine.
 #[must_use]
 pub fn rounded(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.digits$e}").parse::<f64>();
     rounded.unwrap_or(value).to_string()
 }
 
-/// A unit behind a number, after a space; nothing where there is none, "1".
+/// A unit to follow a number, after a space; empty for "1".
 #[must_use]
 pub fn unit_behind(unit: &str) -> String {
     match unit {

@@ -7,28 +7,28 @@ use crate::store::{MapFile, StoreError};
 use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Parameter};
 
-/// Lines of the picture itself; captions take three more.
+/// The most lines of the picture itself; captions take three more.
 const MOST_LINES: usize = 16;
 /// Columns of the picture.
 const COLUMNS: std::ops::RangeInclusive<usize> = 10..=160;
-/// Cells are read at most this finely, and shown by the one nearest to each place.
+/// The most cells that are read along an axis; each place shows the nearest one.
 const MOST_CELLS: usize = 640;
 
-/// Stable, 2, 4 and more unstable roots, other kinds or no value, not known, not computed: colours
-/// of the 256-colour palette.
+/// Colours of the 256-colour palette: stable, 2, 4 and more unstable roots, other kinds or no
+/// value, not known, not computed.
 const COLOURS: [u8; 7] = [37, 230, 180, 136, 250, 255, 16];
 /// The characters of a preview without colours.
 const SHADES: [char; 7] = ['█', ' ', '░', '▒', '?', '/', '.'];
-/// Places in both lists of cells that have no value to show.
+/// Place in both lists from which on cells have no value to show.
 const OTHERS: usize = 4;
 const UNKNOWN: usize = 5;
 const NOT_COMPUTED: usize = 6;
 /// The colour of the hatching.
 const HATCH: u8 = 240;
 
-/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map
-/// tells neither regimes, outcomes nor what is stable, or has fewer than two axes with more than
-/// one value. `colour`: with ANSI escapes, two rows of cells in each line.
+/// The map as text of at most 19 lines and `width` columns. None where the map has neither regimes,
+/// outcomes nor stability, or fewer than two axes with more than one value. With `colour`, it has
+/// ANSI escapes and two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
 ///
@@ -36,7 +36,7 @@ const HATCH: u8 = 240;
 /// When the map cannot be read.
 pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<String>, StoreError> {
     let held = |field: &Field| map.fields().contains(field);
-    // How stick-slip ends is no matter of so few kinds.
+    // The ends of stick-slip have too many kinds for this.
     let of_motions =
         Some(Field::Outcome).filter(|f| held(f) && !map.fields().iter().any(|f| f.of_vc()));
     let kinds = Some(Field::Regime).filter(held).or(of_motions);
@@ -72,8 +72,8 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     Ok(Some(captions.around(&picture, columns, colour)))
 }
 
-/// The least number of unstable roots that goes with a value. Outcomes and regimes are shown like
-/// 0, 2, 4 and 6 roots.
+/// The smallest number of unstable roots for a value. Outcomes and regimes are shown like 0, 2, 4
+/// and 6 roots.
 fn as_count(field: Field, value: f64) -> f64 {
     if field.storage() == Storage::Kind {
         return if value <= 3.0 { 2.0 * value } else { f64::NAN };
@@ -96,8 +96,8 @@ fn plane_axes(map: &MapFile) -> Option<(usize, usize)> {
     }
 }
 
-/// The kind of the cell at parts of the way from left to right and from bottom to top: an index of
-/// [`COLOURS`].
+/// The kind, an index of [`COLOURS`], of the cell at a position from left to right and from bottom
+/// to top.
 fn kind(known: &Known, across: f64, up: f64) -> usize {
     let plane = &known.plane;
     let (column, row) = (place(&plane.columns, across), place(&plane.rows, up));
@@ -116,7 +116,7 @@ fn kind(known: &Known, across: f64, up: f64) -> usize {
     }
 }
 
-/// The index of the value at a part of the way, whichever way the values run.
+/// The index of the value at a position, whether values increase or decrease.
 fn place(values: &[f64], part: f64) -> usize {
     let growing = values.first() <= values.last();
     let part = if growing { part } else { 1.0 - part };
@@ -157,16 +157,16 @@ fn shaded(known: &Known, columns: usize) -> Vec<String> {
     (0..MOST_LINES).map(line).collect()
 }
 
-/// What is written around the picture.
+/// The texts around the picture.
 struct Captions {
     top: String,
     bottom: String,
     x: String,
     ends: (String, String),
     margin: usize,
-    /// What the first shades mean.
+    /// The meanings of the first shades.
     kinds: &'static [&'static str],
-    /// Whether there are cells that are not known, or not computed.
+    /// Whether some cells are not known, or not computed.
     unknown: bool,
     not_computed: bool,
 }
@@ -252,7 +252,8 @@ mod tests {
     use crate::store::map_file::Plane;
 
     fn plane() -> Known {
-        // Stable above the diagonal; the columns run downwards, as mu_prime often does.
+        // Stable above the diagonal; the values of the columns decrease, as those of mu_prime often
+        // do.
         let values: Vec<f64> = (0..100).map(f64::from).collect();
         let cell = |i: usize| if i / 100 > 99 - i % 100 { 0.0 } else { 4.0 };
         Known {
@@ -282,7 +283,7 @@ mod tests {
         assert!(lines.iter().all(|l| l.chars().count() == 40));
     }
 
-    /// Whatever number stands in such a cell.
+    /// Unknown cells are hatched, whatever their number is.
     #[test]
     fn the_unknown_is_hatched() {
         let mut known = plane();

@@ -16,7 +16,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Shows the events of a sweep on standard error.
 pub struct Progress {
     bar: ProgressBar,
-    /// Of the computing.
+    /// The time when computing began.
     start: Cell<Instant>,
     cells: Cell<u64>,
     /// Cells that were left at the start.
@@ -58,7 +58,7 @@ impl Progress {
         self.done.get()
     }
 
-    /// Takes the bar off the terminal.
+    /// Removes the bar from the terminal.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
     }

@@ -1,7 +1,7 @@
-//! Texts from files on their way to a terminal.
+//! Makes texts from files safe for a terminal.
 
-/// A text with its control characters, but for tabs and ends of lines, spelled out, and so those
-/// that turn the direction of writing or end a line unseen: none of them reaches the terminal.
+/// A text in which control characters are spelled out, except tabs and line ends. So are characters
+/// that change the direction of writing or end a line invisibly. None of them reaches the terminal.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -15,10 +15,10 @@ pub fn visible(text: &str) -> String {
     shown
 }
 
-/// More characters of a text are in no message.
+/// The most characters of a text in a message.
 const LONGEST: usize = 4000;
 
-/// A text on one line with its control characters spelled out, cut where it is too long to read.
+/// A text on one line, with control characters spelled out, and cut if it is too long to read.
 #[must_use]
 pub fn visible_line(text: &str) -> String {
     visible(&shortened(text)).replace('\n', "\\n")
@@ -33,8 +33,8 @@ pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// JSON with such characters as its escapes: they stand in its strings alone, and all of them have
-/// one of four digits.
+/// JSON in which such characters are escaped. They occur only inside its strings, and each has an
+/// escape of four digits.
 #[must_use]
 pub fn visible_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
@@ -47,8 +47,8 @@ pub fn visible_json(json: &str) -> String {
     shown
 }
 
-/// Marks, embeddings, overrides and isolates of direction, separators of lines and paragraphs, the
-/// mark of byte order.
+/// Directional marks, embeddings, overrides and isolates, line and paragraph separators, the byte
+/// order mark.
 fn is_unseen(c: char) -> bool {
     matches!(
         c,

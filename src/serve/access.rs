@@ -1,7 +1,7 @@
-//! Who may use the server: whoever has its token, from its own page.
+//! Access to the server: for holders of its token, and from its own page.
 //!
-//! Login nodes are shared, so a port that anybody can reach is no protection; and any page in a
-//! browser can send requests to a port of this machine, so neither is its address.
+//! Login nodes are shared, so a port that anybody can reach is no protection. Nor is the address:
+//! any page in a browser can send requests to a port of this machine.
 
 use std::io;
 use std::net::IpAddr;
@@ -12,18 +12,18 @@ use axum::http::{HeaderMap, Method};
 /// Bytes of a token.
 const BYTES: usize = 32;
 
-/// For which hosts requests may be.
+/// The hosts that requests may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hosts {
     /// This machine, at this port.
     Own(u16),
-    /// And this address.
+    /// In addition this address, at the same port.
     And(IpAddr, u16),
-    /// This machine at any port: the far end of a tunnel has its own.
+    /// This machine at any port: the far end of a tunnel has its own port.
     Tunnel,
 }
 
-/// What requests have to bring.
+/// The credentials that requests need.
 #[derive(Debug)]
 pub(super) struct Access {
     token: String,
@@ -34,15 +34,15 @@ pub(super) struct Access {
 /// Why a request is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// It is for another host: a name that leads here by a trick.
+    /// It names another host: a name that was made to lead here.
     Host,
-    /// It brings no token, or another one.
+    /// It has no token, or a wrong one.
     Token,
-    /// Another page sends it.
+    /// It was sent by another page.
     Origin,
 }
 
-/// So many random bytes, in hexadecimal.
+/// `count` random bytes, in hexadecimal.
 fn random(count: usize) -> io::Result<String> {
     let mut bytes = vec![0; count];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
@@ -50,11 +50,11 @@ fn random(count: usize) -> io::Result<String> {
 }
 
 impl Hosts {
-    /// Whether a request for `host` is for one of these.
+    /// Whether `host` is one of these.
     fn have(self, host: &str) -> bool {
         let own = |name: &str| ["127.0.0.1", "localhost", "[::1]"].contains(&name);
         let Some((name, port)) = host.rsplit_once(':') else {
-            // A tunnel that ends at port 80.
+            // The host of a tunnel that ends at port 80 has no port.
             return self == Self::Tunnel && own(host);
         };
         let digits = !port.is_empty() && port.bytes().all(|byte| byte.is_ascii_digit());
@@ -69,7 +69,7 @@ impl Hosts {
     }
 }
 
-/// Whether a name is this address; any address, if it is that of all.
+/// Whether a name is this address, or any address if this one stands for all.
 fn is_address(name: &str, address: IpAddr) -> bool {
     let bracketed = name
         .strip_prefix('[')
@@ -78,15 +78,15 @@ fn is_address(name: &str, address: IpAddr) -> bool {
         Some(name) => name.parse().map(IpAddr::V6),
         None => name.parse().map(IpAddr::V4),
     };
-    // A page elsewhere reaches this server by a name of its own, never by an address.
+    // A page elsewhere reaches this server by a host name, never by an address.
     named.is_ok_and(|named| named == address || address.is_unspecified())
 }
 
 impl Access {
-    /// With a new token.
+    /// Access with a new token.
     pub(super) fn new(hosts: Hosts) -> io::Result<Self> {
         let token = random(BYTES)?;
-        // Ports of one host share their cookies, and tunnels may end at any port.
+        // The ports of a host share their cookies, and a tunnel may end at any port.
         let cookie_name = match hosts {
             Hosts::Own(port) | Hosts::And(_, port) => format!("slipmap-{port}"),
             Hosts::Tunnel => format!("slipmap-{}", random(4)?),
@@ -102,13 +102,13 @@ impl Access {
         &self.token
     }
 
-    /// The cookie that takes the place of the token in the link.
+    /// The cookie that replaces the token in the link.
     pub(super) fn cookie(&self) -> String {
         let (name, token) = (&self.cookie_name, &self.token);
         format!("{name}={token}; HttpOnly; SameSite=Strict; Path=/")
     }
 
-    /// Whether `offered` is the token, in a time that does not tell how much of it is right.
+    /// Whether `offered` is the token. The time taken does not reveal how much of it is right.
     pub(super) fn is_token(&self, offered: &str) -> bool {
         let (offered, token) = (offered.as_bytes(), self.token.as_bytes());
         let differ = offered
@@ -118,8 +118,7 @@ impl Access {
         offered.len() == token.len() && differ == 0
     }
 
-    /// Whether a request is for this host, by one of the names that a browser on this machine has
-    /// for it.
+    /// Checks that a request names this host, by a name that a browser on this machine has for it.
     pub(super) fn check_host(&self, headers: &HeaderMap) -> Result<(), Refusal> {
         let mut hosts = headers.get_all(HOST).iter();
         let (Some(host), None) = (hosts.next(), hosts.next()) else {
@@ -131,8 +130,8 @@ impl Access {
         }
     }
 
-    /// Whether a request brings the token, as a cookie or as a bearer's, and, where it is more than
-    /// a look, comes from the page itself or from no page.
+    /// Checks that a request has the token, as a cookie or as a bearer token. Unless it only reads,
+    /// it must also come from the page itself or from no page.
     pub(super) fn check(&self, method: &Method, headers: &HeaderMap) -> Result<(), Refusal> {
         let bearer = headers
             .get(AUTHORIZATION)
@@ -156,7 +155,7 @@ impl Access {
         }
     }
 
-    /// Whether no other page sends a request.
+    /// Whether a request does not come from another page.
     fn is_own(headers: &HeaderMap) -> bool {
         let text = |value: &axum::http::HeaderValue| value.to_str().unwrap_or("").to_owned();
         let site = headers.get("sec-fetch-site").map(text);

@@ -1,4 +1,4 @@
-//! What is answered at which address.
+//! The addresses of the server, and their answers.
 
 use std::sync::Arc;
 
@@ -20,10 +20,10 @@ use super::served::Served;
 use super::work::Work;
 use super::{computed, openapi, page};
 
-/// The longest text that is read: friction laws of some thousand points.
+/// The most bytes of a request's text: enough for friction laws of some thousand points.
 const LONGEST_BODY: usize = 1 << 18;
 
-/// Megabytes that computations, and answers not yet sent, may take together.
+/// Megabytes for all computations and unsent answers together.
 const ROOM: u32 = 128;
 
 /// What a page may load: its own files, and nothing from elsewhere.
@@ -48,12 +48,12 @@ pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router
         .with_state(served)
 }
 
-/// Refuses who may not ask, and says in every answer what a browser must not do with it.
+/// Refuses requests without access, and adds the restrictions for browsers to every answer.
 async fn guarded(State(served): State<Served>, request: Request, next: Next) -> Response {
     let (method, headers) = (request.method(), request.headers());
     let checked = served.access.check_host(headers);
     let checked = match link_token(request.uri()) {
-        // The link brings its token itself.
+        // The link has the token in its address.
         Some(token) if served.access.is_token(&token) => checked,
         _ => checked.and_then(|()| served.access.check(method, headers)),
     };
@@ -64,7 +64,7 @@ async fn guarded(State(served): State<Served>, request: Request, next: Next) -> 
         }
         Err(refusal) => {
             let mut response = Problem::from(refusal).into_response();
-            // Who is refused holds no connection.
+            // A refused client must not hold a connection.
             let close = HeaderValue::from_static("close");
             response.headers_mut().insert(header::CONNECTION, close);
             response
@@ -101,8 +101,8 @@ fn link_token(uri: &Uri) -> Option<String> {
     link.0.token.filter(|_| uri.path() == "/")
 }
 
-/// The page. A token in the address becomes a cookie, and leaves the address: not by a redirect,
-/// which would go without the cookie if the link was followed from another page.
+/// The page. A token in the address becomes a cookie and is removed from the address. A redirect
+/// would not do: without the cookie, if the link was followed from another page.
 async fn front(State(served): State<Served>, uri: Uri) -> Result<Response, Problem> {
     if link_token(&uri).is_none() {
         return Ok(page::front());

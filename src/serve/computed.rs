@@ -1,4 +1,4 @@
-//! Requests that are computed now: texts as in files, answered by [`crate::explore`].
+//! Requests that are computed on demand: texts as in files, answered by [`crate::explore`].
 
 use axum::body::Bytes;
 use axum::extract::State;
@@ -17,7 +17,7 @@ use crate::explore::point::Point;
 use crate::explore::vc::CriticalVelocity;
 use crate::explore::{self, Asked, Limits};
 
-/// Their addresses.
+/// The routes of these requests.
 pub(super) fn routes() -> OpenApiRouter<Served> {
     OpenApiRouter::new()
         .routes(routes!(chart))
@@ -28,7 +28,7 @@ pub(super) fn routes() -> OpenApiRouter<Served> {
         .routes(routes!(parameters))
 }
 
-/// Texts of requests, for the description of the interface.
+/// Examples of texts, for the description of the interface.
 mod examples {
     pub(super) const CHART: &str = "boundaries = true\n\n[axes]\n\
         alpha_v = { from = -1.0, to = 0.2, points = 60 }\n\
@@ -46,7 +46,7 @@ mod examples {
 fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
     let kind = headers.get(header::CONTENT_TYPE);
     let kind = kind.and_then(|kind| kind.to_str().ok());
-    // What stands behind a semicolon is a charset, and TOML has one only.
+    // A semicolon is followed by a charset, and TOML has only one.
     let kind = kind.and_then(|kind| kind.split(';').next()).map(str::trim);
     if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/toml")) {
         return Err(Problem::no_toml());
@@ -55,7 +55,7 @@ fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
     Ok(text.map_err(|_| Problem::no_text())?.to_owned())
 }
 
-/// The answer to what a text describes.
+/// The answer to a text.
 async fn answer(
     served: Served,
     request: explore::Request,

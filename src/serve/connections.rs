@@ -1,4 +1,4 @@
-//! Connections: who may hold one, and for how long. Whoever says nothing, or reads nothing, makes
+//! Connections: how many, and for how long. A client that sends nothing, or reads nothing, makes
 //! room for others.
 
 use std::collections::VecDeque;
@@ -26,15 +26,15 @@ use tokio::time::{Instant, Sleep, sleep, timeout};
 
 use super::problem::Problem;
 
-/// Connections that are open at a time.
+/// The most connections that are open at a time.
 const MOST_OPEN: usize = 512;
-/// The head of a request is read for so long, and its body again.
+/// The longest time to read the head of a request, and again to read its body.
 const TO_ASK: Duration = Duration::from_secs(10);
-/// A client has so long to read an answer.
+/// The longest time a client may take to read an answer.
 const TO_READ: Duration = Duration::from_secs(60);
-/// Where the system gives no connection, it is asked again after so long.
+/// The time before another try when the system gives no connection.
 const AFTER_ERROR: Duration = Duration::from_millis(50);
-/// Bytes of the head of a request.
+/// The most bytes of the head of a request.
 const LONGEST_HEAD: usize = 1 << 16;
 
 /// Where connections come from.
@@ -45,10 +45,10 @@ pub(super) enum Listener {
     Unix(tokio::net::UnixListener),
 }
 
-/// Those that are open and have asked nothing yet, the oldest first.
+/// Open connections that have sent no request yet, the oldest first.
 type Silent = VecDeque<(Arc<AtomicBool>, AbortHandle)>;
 
-/// Answers all who connect; never ends by itself.
+/// Answers all clients; never ends by itself.
 pub(super) async fn answer(listener: Listener, app: Router) {
     let places = Arc::new(Semaphore::new(MOST_OPEN));
     let mut silent = Silent::new();
@@ -64,7 +64,7 @@ pub(super) async fn answer(listener: Listener, app: Router) {
         let app = app.clone();
         let answered = match &listener {
             Listener::Tcp(tcp) => tcp.accept().await.map(|(stream, _)| {
-                // Where the system refuses, answers take longer.
+                // If the system refuses this, answers are only slower.
                 drop(stream.set_nodelay(true));
                 tokio::spawn(one(stream, app, Arc::clone(&asked), place))
             }),
@@ -85,7 +85,7 @@ pub(super) async fn answer(listener: Listener, app: Router) {
     }
 }
 
-/// Ends the connection that has said nothing for longest.
+/// Ends the connection that has been silent for longest.
 fn end_oldest(silent: &mut Silent) {
     while let Some((asked, task)) = silent.pop_front() {
         if !asked.load(Ordering::Relaxed) && !task.is_finished() {
@@ -113,23 +113,23 @@ async fn one<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
         .header_read_timeout(TO_ASK)
         .max_buf_size(LONGEST_HEAD)
         .serve_connection(stream, service);
-    // Clients that break off are no news.
+    // Clients that break off are not reported.
     drop(connection.await);
     drop(place);
 }
 
-/// What ends with the first request of a connection that is answered.
+/// Set by the first request of a connection that is answered.
 #[derive(Clone)]
 struct Silence(Arc<AtomicBool>);
 
-/// A request may be made, so its connection makes no room for others.
+/// Marks the connection of an accepted request, so that it is not ended to make room for others.
 pub(super) fn is_answered(request: &Request) {
     if let Some(Silence(asked)) = request.extensions().get() {
         asked.store(true, Ordering::Relaxed);
     }
 }
 
-/// Reads the body of a request, of so many bytes at most, before anything is done about it.
+/// Reads the body of a request, of at most `most` bytes, before the request is handled.
 pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Response {
     let (head, body) = request.into_parts();
     let refused = |status, detail: &str| {
@@ -145,11 +145,11 @@ pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Resp
     }
 }
 
-/// A connection that is closed if its other end does not read in time.
+/// A connection that is closed if the other end does not read in time.
 struct Patient<S> {
     stream: S,
     patience: Duration,
-    /// Runs while something waits to be read there.
+    /// The deadline for the other end to read, while something waits to be read.
     until: Option<Pin<Box<Sleep>>>,
 }
 
@@ -162,7 +162,7 @@ impl<S> Patient<S> {
         }
     }
 
-    /// The result of a write that has to wait: an error once its time is over.
+    /// The result of a write that has to wait: an error after the deadline.
     fn wait<T>(&mut self, context: &mut Context<'_>) -> Poll<Result<T>> {
         let end = Instant::now() + self.patience;
         let until = self
@@ -212,7 +212,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
         self.stream.is_write_vectored()
     }
 
-    /// Comes when all of an answer is written.
+    /// Called when all of an answer is written.
     fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Result<()>> {
         let this = self.get_mut();
         match Pin::new(&mut this.stream).poll_flush(context) {
@@ -237,7 +237,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
 mod tests {
     use super::*;
 
-    /// An answer that is not read is given up; one that is read is not, however long it is.
+    /// An answer that is not read is given up. One that is read is not, however long it takes.
     #[cfg(unix)]
     #[test]
     fn a_client_that_does_not_read_is_given_up() {

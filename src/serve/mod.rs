@@ -1,25 +1,25 @@
-//! slipmap as a service on one's own machine: a page, and the interface that it uses.
+//! slipmap as a service on the user's own machine: a page, and the interface that it uses.
 //!
 //! ```text
 //! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law → explore
 //!                                  → /api/v1/maps → maps → processes that read files
 //! ```
 //!
-//! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers
-//! ([`crate::explore::encoded`]). What is computed is [`crate::explore`]'s.
+//! Requests are TOML as in files. Answers are JSON or, for charts, arrays of numbers
+//! ([`crate::explore::encoded`]). [`crate::explore`] computes them.
 //!
-//! - `access`: who may use it
-//! - `api`: what is answered at which address
-//! - `computed`: requests that are computed now
-//! - `connections`: who may hold a connection, and for how long
+//! - `access`: who may use the server
+//! - `api`: addresses and their answers
+//! - `computed`: requests that are computed on demand
+//! - `connections`: how many connections there are, and for how long
 //! - `maps`: maps from files: a list, and windows on them
 //! - `openapi`: the description of the interface
 //! - `page`: the page's files, `src/serve/page`, which are part of the program
 //! - `problem`: problems as answers of the server
 //! - `room`: memory for answers, until they are sent
-//! - `served`: what answers need
+//! - `served`: the state that all answers share
 //! - `socket`: a socket in the file system, for tunnels
-//! - `work`: few threads, limited time, nobody computes for who has gone
+//! - `work`: computations on few threads, for a limited time, ended when the client has gone
 
 mod access;
 mod api;
@@ -58,7 +58,7 @@ pub enum Place {
         /// The port; 0 takes any free one.
         port: u16,
     },
-    /// At a socket in the file system, which is made.
+    /// At a socket in the file system, which is created.
     #[cfg(unix)]
     Socket {
         /// Its name.
@@ -68,12 +68,12 @@ pub enum Place {
     },
 }
 
-/// What a server is asked to do.
+/// The options of a server.
 #[derive(Debug, Clone)]
 pub struct Serving {
     /// Where it listens.
     pub place: Place,
-    /// Threads that compute.
+    /// Number of computing threads.
     pub threads: usize,
     /// The folder whose maps are shown.
     pub folder: PathBuf,
@@ -81,7 +81,7 @@ pub struct Serving {
     pub reader: ReaderCommand,
 }
 
-/// What a server listens on.
+/// A bound socket.
 #[derive(Debug)]
 enum Bound {
     Tcp(TcpListener),
@@ -89,7 +89,7 @@ enum Bound {
     Unix(std::os::unix::net::UnixListener, socket::Socket),
 }
 
-/// A server that listens already.
+/// A server that is listening.
 #[derive(Debug)]
 pub struct Server {
     bound: Bound,
@@ -134,22 +134,22 @@ impl Server {
         })
     }
 
-    /// The link that opens the page; whoever has it may use the server. That of a socket leads to
+    /// The link that opens the page; whoever has it may use the server. For a socket it leads to
     /// the near end of a tunnel.
     #[must_use]
     pub fn link(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
-            // All addresses, of which a browser here can use this one.
+            // The server listens at all addresses; a browser on this machine can use this one.
             address.set_ip(Ipv4Addr::LOCALHOST.into());
         }
         format!("http://{address}/?token={}", self.access.token())
     }
 
-    /// Answers until `stopped` says so.
+    /// Answers until `stopped` is true.
     ///
     /// # Errors
-    /// When the system gives no threads.
+    /// When the system cannot start threads.
     pub fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
@@ -171,20 +171,20 @@ impl Server {
             }
             Ok(())
         });
-        // What still computes is told to stop, and not waited for.
+        // Running computations are told to stop, but not waited for.
         runtime.shutdown_background();
         ended
     }
 }
 
-/// The name of a socket, which is removed with this.
+/// The name of a socket; dropping it removes the socket.
 #[cfg(unix)]
 type Named = Option<socket::Socket>;
 #[cfg(not(unix))]
 type Named = ();
 
 impl Bound {
-    /// The same for the runtime.
+    /// The listener of the runtime.
     fn listener(self) -> std::io::Result<(Listener, Named)> {
         match self {
             Self::Tcp(listener) => {

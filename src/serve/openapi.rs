@@ -13,7 +13,7 @@ use super::served::Served;
 use crate::explore::chart_bytes::ChartHead;
 use crate::explore::motion_bytes::MotionHead;
 
-/// Where the description is.
+/// The address of the description.
 const ADDRESS: &str = "/api/v1/openapi.json";
 
 /// What is said of the interface as a whole.
@@ -47,7 +47,7 @@ struct Interface;
 #[allow(dead_code, reason = "only described")]
 pub(super) struct Encoded(Vec<u8>);
 
-/// How the token is brought.
+/// How requests carry the token.
 struct Keys;
 
 impl Modify for Keys {
@@ -61,7 +61,7 @@ impl Modify for Keys {
     }
 }
 
-/// The router of `routes`, which also tells what they are.
+/// The router of `routes`, with the address of their description.
 pub(super) fn described(routes: OpenApiRouter<Served>) -> Router<Served> {
     let whole = OpenApiRouter::with_openapi(Interface::openapi()).merge(routes);
     let (router, document) = whole.split_for_parts();

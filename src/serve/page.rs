@@ -44,7 +44,7 @@ const FILES: &[(&str, &str)] = &files![
     "state.js",
     "sweep.js",
     "table.js",
-    // The library uPlot, as it is published.
+    // The library uPlot, as published.
     "uplot.css",
     "uplot-license.txt",
     "uplot.js",
@@ -55,7 +55,7 @@ pub(super) fn front() -> Response {
     ([(CONTENT_TYPE, "text/html; charset=utf-8")], FRONT).into_response()
 }
 
-/// What leads to the page.
+/// A small page that leads on to the page itself.
 pub(super) fn onwards() -> Response {
     let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\">\
         <title>slipmap</title><script src=\"/onwards.js\"></script>\
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn every_file_of_the_page_is_handed_out() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/serve/page");
-        // Of no use to a page that asks a server, and what is handed out as the page itself.
+        // One is of no use to a page with a server, the other is the page itself.
         let besides = ["worker.js", "index.html"];
         let mut found: Vec<String> = std::fs::read_dir(folder)
             .unwrap()

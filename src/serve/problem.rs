@@ -1,4 +1,4 @@
-//! Problems as answers: what is told of a request that cannot be answered (RFC 9457).
+//! Problems as answers: the reply to a request that cannot be answered (RFC 9457).
 
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_TYPE, HeaderValue, RETRY_AFTER};
@@ -7,11 +7,11 @@ use axum::response::{IntoResponse, Response};
 use super::access::Refusal;
 pub(super) use crate::explore::Problem;
 
-/// Seconds after which what is not to be had now may be asked for again.
+/// Seconds after which a request that cannot be answered now may be repeated.
 const SOON: &str = "2";
 
 impl Problem {
-    /// With any status.
+    /// A problem with any status.
     pub(super) fn of(status: StatusCode, detail: impl Into<String>) -> Self {
         Self {
             status: status.as_u16(),
@@ -24,13 +24,13 @@ impl Problem {
 }
 
 impl Problem {
-    /// A request that should be TOML is not.
+    /// The problem of a request that is not TOML but should be.
     pub(super) fn no_toml() -> Self {
         let detail = "the request is to be TOML: Content-Type: application/toml";
         Self::of(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
     }
 
-    /// A request that should be text is not.
+    /// The problem of a request that is not text but should be.
     pub(super) fn no_text() -> Self {
         Self::of(StatusCode::BAD_REQUEST, "the text is not UTF-8")
     }
@@ -72,7 +72,7 @@ pub(super) enum Refused {
     Unprocessable(Problem),
 }
 
-/// The answer where an address has no resource.
+/// The answer for an address without a resource.
 pub(super) fn nothing_here() -> Problem {
     Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")
 }

@@ -11,11 +11,11 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::problem::Problem;
 
-/// Room is waited for so long.
+/// The longest wait for room.
 const LONGEST: Duration = Duration::from_secs(10);
-/// What takes less is not worth mentioning: as many as there are connections may be sent at once.
+/// Answers up to this size need no room: every connection may send one at a time.
 const SMALL: u64 = 1 << 16;
-/// Room is counted in these.
+/// The unit in which room is counted.
 const UNIT: u64 = 1 << 20;
 
 /// Memory that some answers share.
@@ -36,7 +36,7 @@ impl Room {
         }
     }
 
-    /// Waits for `bytes` of room, or for all of it where that is less, and takes it.
+    /// Waits for `bytes` of room and takes it; at most all of the room.
     pub(super) async fn take(&self, bytes: u64) -> Result<Taken, Problem> {
         let all = Arc::clone(&self.all);
         let room = all.acquire_many_owned(self.needed(bytes));
@@ -62,12 +62,12 @@ fn units(bytes: u64) -> u64 {
     }
 }
 
-/// Room that was taken.
+/// Room that is taken.
 #[derive(Debug)]
 pub(super) struct Taken(OwnedSemaphorePermit);
 
 impl Taken {
-    /// The answer that this room is for, until it is sent; what it does not need is given back.
+    /// The answer for which room was taken. It keeps the room that it needs until it is sent.
     pub(super) fn send(mut self, kind: &'static str, bytes: Vec<u8>) -> Response {
         let kept = units(bytes.len() as u64) as usize;
         let besides = self.0.num_permits().saturating_sub(kept);
@@ -77,7 +77,7 @@ impl Taken {
     }
 }
 
-/// An answer that takes room until its last byte is sent.
+/// An answer that keeps its room until its last byte is sent.
 struct Sent {
     bytes: Vec<u8>,
     _room: Taken,

@@ -1,4 +1,4 @@
-//! What answers need.
+//! The state that all answers share.
 
 use std::sync::Arc;
 
@@ -6,13 +6,13 @@ use super::access::Access;
 use super::room::Room;
 use super::work::Work;
 
-/// What all answers share.
+/// The state that all answers share.
 #[derive(Debug, Clone)]
 pub(super) struct Served {
-    /// Who may ask.
+    /// Who may use the server.
     pub access: Arc<Access>,
-    /// What computes.
+    /// The computing threads.
     pub work: Work,
-    /// Memory for what is computed.
+    /// Memory for answers.
     pub room: Room,
 }

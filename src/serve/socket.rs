@@ -6,7 +6,7 @@ use std::os::unix::fs::{FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 
-/// The name of a socket that this process listens on; it goes with this, which therefore has to
+/// The name of a socket that this process listens on. Dropping it removes the socket, so it must
 /// outlive the listener.
 #[derive(Debug)]
 pub(super) struct Socket {
@@ -14,7 +14,7 @@ pub(super) struct Socket {
 }
 
 impl Socket {
-    /// Listens at `path`. Only a socket whose server has ended is replaced, and no other file.
+    /// Listens at `path`. Only a socket whose server has ended is replaced, no other file.
     pub(super) fn listen(path: &Path) -> Result<(Self, UnixListener)> {
         remove_stale(path)?;
         let listener = UnixListener::bind(path)?;
@@ -26,7 +26,8 @@ impl Socket {
 
 impl Drop for Socket {
     fn drop(&mut self) {
-        // Another server may have taken the name. Left behind it is replaced by the next one.
+        // Another server may have taken the name. A socket left behind is replaced by the next
+        // server.
         drop(remove_stale(&self.path));
     }
 }

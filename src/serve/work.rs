@@ -1,4 +1,4 @@
-//! Computing for requests: on few threads, for a limited time, and no longer than somebody waits.
+//! Computes for requests: on few threads, for a limited time, and only while a client waits.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,21 +9,21 @@ use tokio::sync::Semaphore;
 
 use super::problem::Problem;
 
-/// How often it is looked whether the server is to end.
+/// How often it is checked whether the server is to end.
 pub(super) const PAUSE: Duration = Duration::from_millis(50);
-/// Nothing is computed for longer.
+/// The longest computation.
 const LONGEST: Duration = Duration::from_secs(20);
-/// Requests that wait for a thread, for each of them; more are turned away.
+/// The most requests that wait, per thread; more are refused.
 const WAITING: usize = 8;
 
-/// Threads that compute, and who waits for them.
+/// The computing threads, and the places of waiting requests.
 #[derive(Debug, Clone)]
 pub(super) struct Work {
     threads: Arc<Semaphore>,
     places: Arc<Semaphore>,
 }
 
-/// Tells a computation to stop when nobody waits for it any more.
+/// When dropped, it tells a computation to stop: nobody waits for it any more.
 struct Waited(Arc<AtomicBool>);
 
 impl Drop for Waited {
@@ -40,8 +40,8 @@ impl Work {
         }
     }
 
-    /// Computes `what`, which is to look at the flag: it is set once the answer is not wanted any
-    /// more.
+    /// Runs the computation `what`. It must check the flag that it gets, which is set once its
+    /// answer is not wanted any more.
     pub(super) async fn run<T: Send + 'static>(
         &self,
         what: impl FnOnce(&Arc<AtomicBool>) -> Result<T, Problem> + Send + 'static,

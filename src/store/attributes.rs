@@ -15,8 +15,8 @@ use super::values::{Number, is_of};
 
 /// Writes a text attribute as a null-terminated string of fixed length.
 ///
-/// The binding writes null-padded strings only, which netCDF readers pass over on dimension scales
-/// without a word.
+/// The binding writes null-padded strings only. netCDF readers silently ignore those on dimension
+/// scales.
 pub(super) fn put_text(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     let bytes = CString::new(text.replace('\0', " ")).map_err(|e| e.to_string())?;
     let name = CString::new(name).map_err(|e| e.to_string())?;
@@ -61,7 +61,7 @@ pub(super) fn put_numbers<T: H5Type>(at: &Location, name: &str, values: &[T]) ->
     Ok(())
 }
 
-/// Describes a dataset of kinds: `names` are those of the numbers 0, 1, ….
+/// Describes a dataset of kinds: the number k stands for `names[k]`.
 pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5::Result<()> {
     let values: Vec<u8> = (0..names.len() as u8).collect();
     put_text(at, "long_name", long_name)?;
@@ -72,8 +72,8 @@ pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5:
 /// The most bytes of an attribute: more than any that slipmap writes.
 const MOST_BYTES: usize = 64 << 20;
 
-/// Reads a text attribute. slipmap's have a fixed length; of others the library believes the length
-/// that the file claims.
+/// Reads a text attribute of fixed length, as slipmap writes them. For strings of variable length
+/// the library would trust the length that the file claims, so they are refused.
 pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
     let attribute = at.attr(name)?;
     let kind = attribute.dtype()?;
@@ -99,7 +99,7 @@ pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
     utf8(&bytes[..end])
 }
 
-/// Reads an attribute of one number; none where there is no such attribute.
+/// Reads an attribute of one number; none where it is missing or not one number of type `T`.
 pub(super) fn one_number<T: Number>(at: &Location, name: &str) -> Option<T> {
     let attribute = at.attr(name).ok()?;
     match numbers(&attribute).ok()?[..] {
@@ -108,7 +108,7 @@ pub(super) fn one_number<T: Number>(at: &Location, name: &str) -> Option<T> {
     }
 }
 
-/// Reads an attribute of numbers of that very type.
+/// Reads a numeric attribute that is stored as exactly the type `T`.
 pub(super) fn numbers<T: Number>(attribute: &Attribute) -> hdf5::Result<Vec<T>> {
     if !is_of::<T>(&attribute.dtype()) {
         return Err("an attribute of another type".into());

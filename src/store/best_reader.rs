@@ -26,17 +26,17 @@ pub struct MapBest {
     pub frequency: f64,
     /// −1/abscissa; none where the setting is not stable.
     pub relaxation_time: Option<f64>,
-    /// What makes it the best; none where nothing was looked for, and all numbers are NaN.
+    /// Why it is the best; none where there was no search, and all numbers are then NaN.
     pub kind: Option<Kind>,
-    /// The argument principle confirms the abscissa.
+    /// Whether the argument principle confirms the abscissa.
     pub certified: bool,
     /// Number of stable regions of the plane.
     pub regions: u64,
 }
 
 impl MapFile {
-    /// The axes (gain, delay) of the planes whose best settings the map holds; none where it holds
-    /// none.
+    /// The axes (gain, delay) of the planes whose best settings the map holds; none for a map
+    /// without best settings.
     #[must_use]
     pub fn best_plane(&self) -> Option<(usize, usize)> {
         self.plane_of(BEST)
@@ -106,7 +106,7 @@ impl Columns {
     }
 }
 
-/// The kind of that number; none for the fill value.
+/// The kind with this number; none for the fill value.
 fn kind(number: i8) -> Option<Kind> {
     let place = usize::try_from(number).ok()?;
     Kind::ALL.get(place).copied()

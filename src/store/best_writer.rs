@@ -64,7 +64,7 @@ struct Variable<T> {
 }
 
 impl<T: H5Type + Copy + PartialEq> Variable<T> {
-    /// Integers without a missing one get no `_FillValue`: readers would turn them into floats.
+    /// Integers without a missing value get no `_FillValue`: readers would turn them into floats.
     fn write(&self) -> hdf5::Result<()> {
         let missing = |value: &T| *value == self.fill;
         let real = !missing(&self.fill);
@@ -221,7 +221,7 @@ impl BestWriter {
         self.regions.values.push(row.regions);
     }
 
-    /// Writes what was taken. To be called once, when all planes are there.
+    /// Writes the collected values. Called once, after the last plane.
     pub(super) fn finish(&self) -> hdf5::Result<()> {
         self.numbers.iter().try_for_each(Variable::write)?;
         self.flags.iter().try_for_each(Variable::write)?;
@@ -229,7 +229,7 @@ impl BestWriter {
     }
 }
 
-/// The axes `outer` of the map once more in `group`, with the map's dimensions.
+/// Repeats the map's axes `outer` in `group`, on the map's dimensions.
 fn put_coordinates(
     group: &Group,
     dimensions: &mut Dimensions,

@@ -1,5 +1,5 @@
-//! Crossing curves in a map, and curves of degrees of stability: CF contiguous ragged arrays,
-//! appended plane by plane.
+//! Writes crossing curves and curves of degrees of stability into a map: CF contiguous ragged
+//! arrays, appended plane by plane.
 
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::{Dataset, Group, H5Type};
@@ -119,7 +119,7 @@ impl Maker<'_> {
     }
 }
 
-/// Makes the datasets of all columns, those of the outer axes behind the columns of curves.
+/// Makes the datasets of all columns; those of the outer axes follow the columns of curves.
 struct Making<'a> {
     maker: Maker<'a>,
     datasets: Vec<Dataset>,
@@ -245,7 +245,7 @@ impl BoundaryWriter {
         Ok(())
     }
 
-    /// Gives the dimensions the lengths that their data have come to.
+    /// Sets each dimension to the final length of its data.
     pub(super) fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
         self.flush()?;
         for (id, length) in self.ids.into_iter().zip(self.lengths) {

@@ -1,4 +1,4 @@
-//! Cells of a map in the order of its axes, some at a time.
+//! Reads the cells of a map in the order of its axes, block by block.
 
 use hdf5::SliceOrIndex;
 
@@ -8,7 +8,7 @@ use super::map_summary::for_each_piece;
 use super::schema::STATUS;
 use crate::sweep::Field;
 
-/// Bytes of numbers that are in memory at once, about.
+/// Approximate bytes of numbers in memory at once.
 const MOST_BYTES: usize = 32 << 20;
 
 /// Neighbouring cells of a map, row by row, last axis fastest.
@@ -26,11 +26,11 @@ pub struct CellBlock {
 }
 
 impl MapFile {
-    /// Hands over all cells, those of `held` axes at these indices alone, block by block, the last
-    /// axis fastest over all of them. `held` has an entry for every axis.
+    /// Passes the cells to `visit` block by block, the last axis fastest. `held` has one entry per
+    /// axis: an axis with an index there is read at that index alone.
     ///
     /// # Errors
-    /// When the map does not hold one of the fields, or is damaged, and those of `visit`.
+    /// When the map lacks one of the fields or is damaged. Errors of `visit` are passed on.
     pub fn for_each_block<E: From<StoreError>>(
         &self,
         fields: &[Field],
@@ -78,9 +78,9 @@ impl MapFile {
     }
 }
 
-/// The lengths of blocks of at most `most` cells, about: whole last axes, part of the one before
-/// them, one cell of the others. Such a part ends with a chunk where it holds one, which is then
-/// read once.
+/// The shape of blocks of about `most` cells: the last axes whole, part of the axis before them,
+/// and one cell along the others. That part is a whole number of chunks where at least one fits, so
+/// that each chunk is read once.
 fn block_shape(shape: &[usize], chunk: Option<&[usize]>, most: usize) -> Vec<usize> {
     let mut block = vec![1; shape.len()];
     let mut behind = 1;

@@ -7,13 +7,15 @@ use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
 pub struct ChunkLayout {
     /// Values along each axis.
     pub shape: Vec<usize>,
-    /// Values of a chunk along each axis, at least 1; those at the far edges reach beyond.
+    /// Values of a chunk along each axis, at least 1; chunks at the far edges extend beyond the
+    /// dataset.
     pub chunk: Vec<usize>,
     /// Bytes of a value.
     pub element: usize,
-    /// The bytes of a chunk are deflated.
+    /// Whether chunks are deflated.
     pub deflated: bool,
-    /// First bytes of all values come first, then second bytes, and so on.
+    /// Whether chunks are shuffled: first the first bytes of all values, then the second bytes, and
+    /// so on.
     pub shuffled: bool,
 }
 
@@ -39,10 +41,10 @@ impl ChunkLayout {
         self.cells() * self.element
     }
 
-    /// The values of a chunk as bytes, also those beyond the edges, from what is stored.
+    /// The values of a chunk as bytes, decoded from `stored`, including those beyond the edges.
     ///
     /// # Errors
-    /// When it is not what such a chunk is stored as, in words.
+    /// A description of what is wrong when `stored` is no valid chunk of this layout.
     pub fn decoded(&self, stored: Vec<u8>) -> Result<Vec<u8>, &'static str> {
         let mut bytes = stored;
         let length = self.bytes();

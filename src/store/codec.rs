@@ -1,7 +1,7 @@
 //! HDF5's own shuffle and deflate filters, applied on the computing threads.
 //!
-//! The library would apply them behind its one lock; here every thread does, and whole chunks are
-//! handed to it.
+//! The library would apply them behind its one lock. Here each thread compresses its own chunks and
+//! hands whole chunks to the library.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use zlib_rs::{
 /// The deflate level that the files name.
 pub(super) const DEFLATE_LEVEL: u8 = 1;
 
-/// Constant chunks that are remembered.
+/// Number of constant chunks that are remembered.
 const MOST_CONSTANT: usize = 64;
 
 /// A compressed chunk; equal chunks share their bytes.
@@ -25,7 +25,7 @@ pub(super) type Chunk = Arc<[u8]>;
 pub(super) struct ChunkCodec {
     shuffled: Vec<u8>,
     out: Vec<u8>,
-    /// Chunks of one repeated element, by its bytes and size.
+    /// Chunks of one repeated element, by its bits and by the number and size of the elements.
     constant: HashMap<(u64, usize), Chunk>,
 }
 
@@ -33,8 +33,8 @@ pub(super) struct ChunkCodec {
 pub(super) trait Element: Copy + PartialEq {
     /// Size in bytes.
     const SIZE: usize;
-    /// How deflate looks for repetitions: counts and flags come in long runs, and looking only for
-    /// those is several times faster and finds more.
+    /// How deflate looks for repetitions. Counts and flags come in long runs; searching only for
+    /// runs is several times faster and compresses better.
     const STRATEGY: Strategy;
     /// The bits, for telling constant chunks apart.
     fn bits(self) -> u64;
@@ -101,7 +101,8 @@ impl ChunkCodec {
     }
 }
 
-/// The `length` bytes of a chunk of single bytes; none where it is not such a chunk.
+/// Inflates a chunk of single bytes to `length` bytes; none where it does not inflate to that
+/// length.
 pub(super) fn decode_bytes(chunk: &[u8], length: usize) -> Option<Vec<u8>> {
     let mut out = vec![0; length];
     match decompress_slice(&mut out, chunk, InflateConfig::default()) {
@@ -110,7 +111,7 @@ pub(super) fn decode_bytes(chunk: &[u8], length: usize) -> Option<Vec<u8>> {
     }
 }
 
-/// What tells a chunk of one repeated element from others; none for any other chunk.
+/// The key of a chunk of one repeated element; none for any other chunk.
 fn constant_key<T: Element>(values: &[T]) -> Option<(u64, usize)> {
     let first = *values.first()?;
     let same = values.iter().all(|v| v.bits() == first.bits());

@@ -1,4 +1,4 @@
-//! The columns of a map: its fields and the status, chunk by chunk as they stand in the file.
+//! The columns of a map, its fields and the status, chunk by chunk as stored in the file.
 
 use super::chunk_layout::ChunkLayout;
 use super::error::StoreError;
@@ -53,7 +53,7 @@ impl FileColumns {
         })
     }
 
-    /// The map that they are of.
+    /// The map that the columns belong to.
     #[must_use]
     pub fn map(&self) -> &MapFile {
         &self.map
@@ -65,11 +65,11 @@ impl FileColumns {
         self.columns.get(column).map(Chunks::layout)
     }
 
-    /// The bytes of the chunk of a column whose first cell is at `offset`; none where there is
-    /// none.
+    /// The stored bytes of the chunk of a column whose first cell is at `offset`; none where the
+    /// file has no such chunk.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// When the chunk cannot be read.
     pub fn stored(&self, column: usize, offset: &[usize]) -> Result<Option<Vec<u8>>, StoreError> {
         match self.columns.get(column) {
             Some(chunks) => {

@@ -13,7 +13,7 @@ use super::schema::{BEST, BOUNDARIES, CHUNKS_SHA256, CONTENTS_SHA256, root};
 use super::values::{for_each_part, is_of};
 use crate::sweep::plan::in_hexadecimal;
 
-/// Attributes that are no part of it: references to places in the file, the checksums, and when the
+/// Attributes that are not hashed: references to places in the file, the checksums, and when the
 /// map was made.
 const LEFT_OUT: [&str; 5] = [
     "DIMENSION_LIST",
@@ -26,12 +26,12 @@ const LEFT_OUT: [&str; 5] = [
 /// The most attributes of an object: more than anything in a map has.
 const MOST_ATTRIBUTES: usize = 64;
 
-/// SHA-256, in hexadecimal, over every group and dataset, sorted by name: name, attributes, and for
-/// datasets that are not `cells` shape and values.
+/// SHA-256, in hexadecimal, over every group and dataset, sorted by path. Each contributes its path
+/// and attributes; a dataset that is not in `cells` also its shape and values.
 ///
 /// # Errors
-/// When something cannot be read, or is something that no map holds: other groups than slipmap's,
-/// groups in these, links; soon after `stop` is set.
+/// When something cannot be read, when the file has what no map has (other groups, nested groups,
+/// links), or when `stop` is set.
 pub(super) fn contents_hash(
     file: &File,
     cells: &[&str],
@@ -43,7 +43,7 @@ pub(super) fn contents_hash(
             groups.push((format!("/{name}"), open::group(file, name)?));
         }
     }
-    // By path: one part after the other is read, since all together may be large.
+    // Paths first, contents later: all contents together may be too large for memory.
     let mut parts = BTreeMap::new();
     for (path, group) in &groups {
         let own = if path.is_empty() { "/" } else { path };
@@ -92,12 +92,13 @@ fn add_dataset(
     for length in dataset.shape() {
         head.extend((length as u64).to_le_bytes());
     }
-    // Scales without coordinates have a length and nothing else.
+    // Scales without coordinates have a length but no values.
     let values = (dataset.storage_size() > 0).then_some(dataset);
     add_part(&head, values, hash, stop)
 }
 
-/// Adds attributes and shape as bytes, and the values that come behind, after the length of both.
+/// Hashes a part: the length in bytes of all that follows, its attributes and shape, then its
+/// values.
 fn add_part(
     head: &[u8],
     values: Option<&Dataset>,
@@ -113,7 +114,7 @@ fn add_part(
     values.map_or(Ok(()), |dataset| add_values(dataset, hash, stop))
 }
 
-/// Names and values of all attributes that count, by name.
+/// Names and values of all hashed attributes, sorted by name.
 fn attributes(of: &Location) -> hdf5::Result<Vec<u8>> {
     let mut names = of.attr_names()?;
     if names.len() > MOST_ATTRIBUTES {

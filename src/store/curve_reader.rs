@@ -26,25 +26,25 @@ pub struct MapCurve {
 }
 
 impl MapCurve {
-    /// It bounds the region where sliding is stable.
+    /// Whether it bounds the region of stable sliding.
     #[must_use]
     pub fn bounds_stability(&self) -> bool {
         self.degree_of_stability == 0.0 && self.piece.stable_side != StableSide::Neither
     }
 }
 
-/// About so many curves, and vertices of them, are read at once.
+/// About this many curves, and this many vertices, are read at once.
 const CURVES_AT_ONCE: usize = 1 << 12;
 const VERTICES_AT_ONCE: usize = 1 << 17;
 /// No curve has more vertices than this.
 const MOST_VERTICES: usize = 1 << 20;
 
 impl MapFile {
-    /// Hands over all curves of the map, one by one, in order, until `visit` has seen enough; few
-    /// of them are in memory at once. None where it holds none.
+    /// Passes the curves of the map to `visit`, one by one in order, until it breaks off. Few
+    /// curves are in memory at once. A map without curves gives none.
     ///
     /// # Errors
-    /// When the file is damaged; some curves may have been handed over then.
+    /// When the file is damaged; `visit` may have seen some curves by then.
     pub fn for_each_curve(
         &self,
         mut visit: impl FnMut(MapCurve) -> ControlFlow<()>,
@@ -75,7 +75,7 @@ impl MapFile {
         }
     }
 
-    /// The curves in the planes whose values of the axes outside of them are `wanted`, in order.
+    /// The curves in the planes at the values `wanted` of the axes outside them, in order.
     ///
     /// # Errors
     /// When the file is damaged.
@@ -97,8 +97,8 @@ impl MapFile {
 /// The variables of the group that describe curves.
 struct CurveColumns {
     vertex_count: Dataset,
-    /// Of all columns of the rows, in order; none for those of corners, and for those that maps of
-    /// the first versions do not hold.
+    /// One for each column of the rows, in order; none for columns of corners, and for columns that
+    /// maps of the first versions lack.
     columns: Vec<Option<Dataset>>,
     outer: Vec<Dataset>,
     vertices: usize,
@@ -168,7 +168,7 @@ impl FillColumn for Reading<'_> {
     }
 }
 
-/// Whether all columns have as many rows as there are.
+/// Checks that every column has as many rows as there are curves or vertices.
 struct Fitting<'a> {
     columns: std::slice::Iter<'a, Option<Dataset>>,
     curves: usize,
@@ -214,8 +214,8 @@ impl CurveColumns {
         self.vertex_count.size()
     }
 
-    /// How many of the curves from `first` on are read at once, and how many vertices they have:
-    /// at least one curve. None where one says that it has more than there can be.
+    /// How many curves, from `first` on, to read at once, and how many vertices they have: at least
+    /// one curve. None where a curve claims more than `MOST_VERTICES`.
     fn next(&self, first: usize) -> hdf5::Result<Option<(usize, usize)>> {
         let most = self.curves().min(first + CURVES_AT_ONCE);
         let counts: Vec<i32> = part(&self.vertex_count, first..most)?;
@@ -233,9 +233,9 @@ impl CurveColumns {
         Ok(Some((curves, vertices)))
     }
 
-    /// The rows of the curves from `first` on, a number of curves and of vertices, with the values
-    /// of the axes outside their planes, but no corners; at least one curve. None where the columns
-    /// do not fit together.
+    /// Reads a batch of at least one curve, from the curve and vertex `first` on, without corners.
+    /// Also gives the values of the axes outside their planes. None where the columns do not fit
+    /// together.
     fn read(&self, first: (usize, usize)) -> hdf5::Result<Option<(CurveRows, Vec<Vec<f64>>)>> {
         let Some((curves, vertices)) = self.next(first.0)? else {
             return Ok(None);
@@ -275,8 +275,8 @@ fn part<T: Number>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>>
     values::read(column, &[slab])
 }
 
-/// The curves that rows describe, with the values of the axes outside their planes column by
-/// column; none where the columns do not fit together.
+/// The curves described by `rows`. `outer` has one column of values for each axis outside the
+/// planes. None where the columns do not fit together.
 #[must_use]
 pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> {
     let curves = rows.curves();
@@ -285,7 +285,7 @@ pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> 
     }
     let mut from = 0;
     let curve = |i: usize| {
-        // Not negative, and all together as many as there are: the rows are consistent.
+        // The rows are consistent: counts are not negative and add up to the number of vertices.
         let to = from + rows.vertex_count[i] as usize;
         let [ps, qs, omegas] = [&rows.p, &rows.q, &rows.omega].map(|c| &c[from..to]);
         from = to;

@@ -1,5 +1,4 @@
-//! The curves of a plane as rows of numbers: as they are kept between the computing and the map,
-//! and as they stand in it.
+//! The curves of a plane as columns of numbers, in the form in which tiles and the map hold them.
 
 use hdf5::H5Type;
 use serde::{Deserialize, Serialize};
@@ -10,22 +9,22 @@ use crate::linear::curves::{Corner, CurvePiece};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
 
-/// How a pair of roots crosses, in words of the map: for −1, 0, 1.
+/// How a pair of roots crosses, in the words of the map: for −1, 0, 1.
 pub const DIRECTIONS: &str = "to_the_left touch to_the_right";
-/// The side of a curve on which sliding is stable, in words of the map, for −2 to 2: −2 and 2 where
-/// the first parameter of the plane is the same along the curve. In planes without the delay the
-/// second parameter takes its place.
+/// The side of a curve on which sliding is stable, in the words of the map, for −2 to 2. −2 and 2
+/// stand where the first parameter of the plane is constant along the curve. In planes without the
+/// delay "delays" means the second parameter.
 pub const STABLE_SIDES: &str =
     "smaller_parameter shorter_delays neither longer_delays larger_parameter";
-/// What lies on the line along a curve, in words of the map: for 0, 1, 2.
+/// What lies on the line along a curve, in the words of the map: for 0, 1, 2.
 pub const CURVE_KINDS: &str = "pair real_root leading_coefficient";
 
-/// What a column has a number for.
+/// What each number of a column belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Per {
     /// One piece of a curve.
     Curve,
-    /// A vertex of a piece; those of all pieces, one piece after the other.
+    /// A vertex of a piece. The vertices of all pieces follow one another.
     Vertex,
     /// A point where two curves cross.
     Corner,
@@ -34,28 +33,29 @@ pub(super) enum Per {
 /// What a column is called, and the unit of its numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Named {
-    /// A number by this name, with this meaning.
+    /// A number with this name and this meaning.
     Number(&'static str, &'static str),
     /// A frequency.
     Frequency(&'static str, &'static str),
     /// A rate of decay.
     Rate(&'static str, &'static str),
-    /// The parameter of the plane, its name behind this.
+    /// The first parameter of the plane; its name follows this prefix.
     Parameter(&'static str),
-    /// The second parameter of the plane, the delay in planes with it, its name behind this.
+    /// The second parameter of the plane, the delay where it is an axis; its name follows this
+    /// prefix.
     Second(&'static str),
 }
 
-/// What there is to know of a column.
+/// Describes a column.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundaryColumn {
     pub per: Per,
     pub named: Named,
-    /// Numbers that stand for something, and the words for it.
+    /// Numbers that stand for kinds, and the words for them.
     pub flags: Option<(&'static [i8], &'static str)>,
-    /// The dimension whose elements it counts, see CF's contiguous ragged arrays.
+    /// The dimension whose elements the column counts, see CF's contiguous ragged arrays.
     pub counts: Option<&'static str>,
-    /// Zero in all rows of maps that do not hold it, those of the first versions.
+    /// Maps of the first versions lack the column; it then counts as zero in all rows.
     pub optional: bool,
 }
 
@@ -69,13 +69,13 @@ const fn column(per: Per, named: Named) -> BoundaryColumn {
     }
 }
 
-/// Looks at every column, in the order in which they stand in a map.
+/// Visits every column, in the order of the map.
 pub(super) trait EachColumn {
     /// A column with its numbers.
     fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, values: &[T]) -> hdf5::Result<()>;
 }
 
-/// Fills every column, in the order in which they stand in a map.
+/// Fills every column, in the order of the map.
 pub(super) trait FillColumn {
     /// Appends to a column.
     fn fill<T: Number>(
@@ -93,13 +93,13 @@ macro_rules! boundary_columns {
         $(#[$about])*
         #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
         pub struct $Rows {
-            /// Some curves are left out: too many cross the plane.
+            /// Whether some curves are left out because too many cross the plane.
             pub left_out: bool,
             $($(#[$doc])* pub $name: Vec<$kind>,)+
         }
 
         impl $Rows {
-            /// All columns looked at by `visitor`, in order.
+            /// Shows all columns to `visitor`, in order.
             pub(super) fn each(&self, visitor: &mut impl EachColumn) -> hdf5::Result<()> {
                 $({
                     const ABOUT: &BoundaryColumn = &$row;
@@ -108,7 +108,7 @@ macro_rules! boundary_columns {
                 Ok(())
             }
 
-            /// All columns filled by `visitor`, in order.
+            /// Has `visitor` fill all columns, in order.
             pub(super) fn fill(&mut self, visitor: &mut impl FillColumn) -> hdf5::Result<()> {
                 $({
                     const ABOUT: &BoundaryColumn = &$row;
@@ -117,18 +117,18 @@ macro_rules! boundary_columns {
                 Ok(())
             }
 
-            /// Takes the rows of `more` behind its own.
+            /// Appends the rows of `more`.
             pub(super) fn extend(&mut self, more: &Self) {
                 self.left_out |= more.left_out;
                 $(self.$name.extend_from_slice(&more.$name);)+
             }
 
-            /// Forgets all rows.
+            /// Removes all rows.
             pub(super) fn clear(&mut self) {
                 $(self.$name.clear();)+
             }
 
-            /// Lengths of the columns, and of what.
+            /// The length of each column, with what its numbers belong to.
             fn lengths(&self) -> Vec<(Per, usize)> {
                 vec![$(($row.per, self.$name.len())),+]
             }
@@ -157,7 +157,7 @@ boundary_columns! {
                 Named::Number("direction", "how a pair of roots crosses with growing delay"),
             )
         };
-        /// Per curve: −1 shorter delays, 0 neither, 1 longer ones, ∓2 smaller and larger p.
+        /// Per curve: −1 shorter delays, 0 neither, 1 longer delays, ∓2 smaller and larger p.
         stable_side: i8 = BoundaryColumn {
             flags: Some((&[-2, -1, 0, 1, 2], STABLE_SIDES)),
             ..column(
@@ -248,7 +248,7 @@ boundary_columns! {
     }
 }
 
-/// A column as the reference of map files tells it: what it has a number for, its name, what it is.
+/// A column for the reference of map files: what its numbers belong to, its name, its meaning.
 pub type DescribedColumn = (&'static str, String, String);
 
 struct Describing(Vec<DescribedColumn>);
@@ -374,8 +374,7 @@ impl CurveRows {
     }
 }
 
-/// The values of the axes outside the planes of curves, at the plane of number `number`; empty
-/// where no curves are traced.
+/// The values of the axes outside the planes of curves, for the plane at `index`.
 pub(super) fn outer_values(plan: &Plan, index: &[usize]) -> Vec<f64> {
     let (p, tau) = plan.boundary_plane.unwrap_or((usize::MAX, usize::MAX));
     let axes = plan.spec.axes.iter().zip(index).enumerate();

@@ -62,7 +62,7 @@ pub(super) fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf
     put_friction(file, &plan.spec.fixed)
 }
 
-/// What the scalar coordinates leave open of the friction law or the system, if there is one.
+/// Writes what the scalar coordinates leave out: the system, and the friction law with its table.
 pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
     if let Some(system) = setting.system() {
         put_text(file, root::SYSTEM, &system.to_toml())?;
@@ -105,7 +105,7 @@ pub(super) fn describe_parameter(
     put_text(dataset, "units", &parameter.unit(units))
 }
 
-/// How critical velocities were looked for.
+/// Writes the options of the search for critical velocities.
 pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()> {
     let protocol = search.protocol;
     put_text(dataset, schema::vc::PROTOCOL, protocol.name())?;
@@ -118,7 +118,7 @@ pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()>
     put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
 }
 
-/// Of which starts the share is.
+/// Writes which starts the share is taken over.
 pub(super) fn put_basin(dataset: &Dataset, basin: &Basin) -> hdf5::Result<()> {
     put_text(dataset, schema::basin::OVER, basin.over.name())?;
     put_text(dataset, schema::basin::REGION, &basin.described())?;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::error::StoreError;
 
-/// Writes a new file and makes it durable. What stands at `path`, a link that was planted there for
-/// instance, is not written to.
+/// Writes a new file and makes it durable. Whatever stands at `path` already, such as a planted
+/// link, is not written to.
 pub(super) fn write_synced(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
@@ -22,15 +22,14 @@ pub(super) fn write_synced(
     };
     written().map_err(|error| {
         if error.kind() != ErrorKind::AlreadyExists {
-            // What is half written is of no use, and on a full disk in the way.
+            // A half-written file is of no use, and takes up space on a full disk.
             let _ = fs::remove_file(path);
         }
         StoreError::io("write", path)(error)
     })
 }
 
-/// All bytes of a regular file. A pipe or a device in its place is not opened: reading it might
-/// never end.
+/// Reads all bytes of a regular file. A pipe or a device is not opened: reading it might never end.
 pub(super) fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     let found = fs::metadata(path).map_err(NotRead::Refused)?;
     if !found.is_file() {
@@ -49,7 +48,7 @@ pub(super) enum NotRead {
     Refused(std::io::Error),
     /// It is no regular file.
     Foreign,
-    /// It has so many bytes.
+    /// It has this many bytes, too many to read.
     Large(u64),
 }
 
@@ -65,8 +64,8 @@ pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> 
     sync_name(path)
 }
 
-/// Makes the name of a file or a folder durable: without it, what is in a folder is lost however
-/// often that was synced.
+/// Makes the name of a file or a folder durable by syncing its parent. Without this a folder can be
+/// lost with all its contents, however often those were synced.
 pub(super) fn sync_name(path: &Path) -> Result<(), StoreError> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => sync(folder),

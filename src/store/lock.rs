@@ -4,8 +4,8 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
-/// Locks the file `path`, which is made if it is not there; none where another process holds it. A
-/// file that a run left which died is no obstacle.
+/// Locks the file `path`, creating it if needed; none where another process holds the lock. A lock
+/// file left by a run that died is no obstacle.
 pub(super) fn acquire(path: &Path) -> Result<Option<File>, Error> {
     loop {
         if path.symlink_metadata().is_ok_and(|m| !m.is_file()) {
@@ -21,7 +21,7 @@ pub(super) fn acquire(path: &Path) -> Result<Option<File>, Error> {
             Err(TryLockError::WouldBlock) => return Ok(None),
             Err(TryLockError::Error(error)) => return Err(error),
         }
-        // Another run may have removed the file between opening and locking: then the lock is on
+        // Another run may have removed the file between opening and locking. The lock then protects
         // nothing.
         if still_there(&lock, path) {
             return Ok(Some(lock));

@@ -1,6 +1,6 @@
 //! Reads maps.
 //!
-//! Longer than most files: one type, and what it can be asked.
+//! Longer than most files: one type with its queries.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -34,7 +34,7 @@ pub struct MapAxis {
     pub unit: String,
 }
 
-/// A rectangle of cells of one field, as numbers: fill values and cells beyond counting are NaN.
+/// A rectangle of cells of one field, as numbers: NaN where a cell has no value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plane {
     /// Values of the row axis at the rows that were read.
@@ -50,7 +50,7 @@ pub struct Plane {
 pub struct MapFile {
     path: PathBuf,
     file: File,
-    /// Whose parameters there are, where it is not the letter's.
+    /// The system whose parameters the axes are, where it is not the letter's.
     system: Option<SystemModel>,
     axes: Vec<MapAxis>,
     fields: Vec<Field>,
@@ -60,8 +60,8 @@ impl MapFile {
     /// Opens a map for reading.
     ///
     /// # Errors
-    /// When the file is missing, in use by a program that writes it, no HDF5 file, no map, of
-    /// another format version, or damaged.
+    /// When the file is missing, is open for writing in another program, is no HDF5 file or no map,
+    /// has another format version, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let file = open::to_read(path, StoreError::not_a_map)?;
         let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
@@ -109,7 +109,7 @@ impl MapFile {
         Ok(())
     }
 
-    /// Groups of planes name two different axes.
+    /// Checks that each group of planes names two different axes.
     fn check_planes(&self) -> Result<(), StoreError> {
         let there = |group: &&str| self.file.link_exists(group);
         match [BOUNDARIES, BEST]
@@ -162,13 +162,13 @@ impl MapFile {
         text(&self.file, name).ok()
     }
 
-    /// The sweep file that made the map; empty where the map lacks it.
+    /// The text of the sweep file that made the map; empty where the map lacks it.
     #[must_use]
     pub fn sweep_text(&self) -> String {
         self.root_text(root::SWEEP).unwrap_or_default()
     }
 
-    /// The sweep that made the map, with the meaning that its text had when it was written.
+    /// The sweep that made the map, read with the meaning that its text had when it was written.
     ///
     /// # Errors
     /// What [`SweepSpec`] refuses, with the place in [`sweep_text`](Self::sweep_text).
@@ -180,19 +180,19 @@ impl MapFile {
         Ok(spec)
     }
 
-    /// The units of its parameters, those of the sweep; dimensionless where that cannot be read.
+    /// The units of the sweep's parameters; dimensionless where the sweep cannot be read.
     #[must_use]
     pub fn units(&self) -> Units {
         self.sweep()
             .map_or_else(|_| Units::default(), |spec| spec.units)
     }
 
-    /// The hash of everything besides the cells, as it is now.
+    /// The hash of everything besides the cells, computed from the file as it is now.
     pub(super) fn contents_hash(&self, stop: &AtomicBool) -> hdf5::Result<String> {
         contents_hash(&self.file, &self.names().collect::<Vec<_>>(), stop)
     }
 
-    /// Version of the layout that it has.
+    /// Version of the file's layout.
     #[must_use]
     pub fn format_version(&self) -> i32 {
         one_number(&self.file, root::FORMAT_VERSION).unwrap_or(schema::FORMAT_VERSION)
@@ -218,7 +218,8 @@ impl MapFile {
             .unwrap_or_else(|_| "1".into())
     }
 
-    /// What a field is in this map: beside critical velocities an outcome is another one.
+    /// The meaning of a field in this map. An outcome beside critical velocities means something
+    /// else.
     #[must_use]
     pub fn long_name(&self, field: Field) -> String {
         open::dataset(&self.file, self.name_of(field))
@@ -226,7 +227,7 @@ impl MapFile {
             .unwrap_or_else(|_| field.long_name().into())
     }
 
-    /// The names of the datasets of cells, as this file has them: the fields' in order, and the
+    /// The names of the datasets of cells in this file: those of the fields in order, then the
     /// status.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
         let fields = self.fields.iter().map(|&f| self.name_of(f));
@@ -290,9 +291,9 @@ impl MapFile {
             .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
     }
 
-    /// The plane of `field` spanned by the axes `row_axis` and `column_axis` at `index` along the
-    /// others, thinned evenly to at most `most` cells each way. Where both are the same axis: the
-    /// line along it, as one row.
+    /// The plane of `field` spanned by the axes `row_axis` and `column_axis`, at `index` along the
+    /// others. It is thinned evenly to at most `most` cells each way. If both axes are the same,
+    /// the plane is the line along that axis, as one row.
     ///
     /// # Errors
     /// When the file is damaged there.
@@ -350,7 +351,7 @@ impl MapFile {
         })
     }
 
-    /// How many cells of an axis stand for one, where at most `most` are read.
+    /// The step along an axis with which at most `most` cells are read.
     fn step(&self, axis: usize, most: usize) -> usize {
         self.axes[axis].values.len().div_ceil(most).max(1)
     }
@@ -376,8 +377,8 @@ impl MapFile {
         (0..self.axes.len()).map(along).collect()
     }
 
-    /// The bytes of a dataset's chunk whose first cell is at `offset`, as they stand in the file;
-    /// none where there is none.
+    /// The bytes of the chunk of a dataset whose first cell is at `offset`, as stored in the file;
+    /// none where there is no such chunk.
     pub(crate) fn stored_chunk(
         &self,
         name: &str,
@@ -425,7 +426,7 @@ impl MapFile {
         read(dataset, slab).map_err(StoreError::hdf5("read", &self.path))
     }
 
-    /// The axes of the planes in which the map holds crossing curves; none where it holds no
+    /// The axes of the planes in which the map holds crossing curves; none for a map without
     /// curves.
     #[must_use]
     pub fn boundary_plane(&self) -> Option<(usize, usize)> {
@@ -437,7 +438,7 @@ impl MapFile {
         open::group(&self.file, name)
     }
 
-    /// The axes that a group names as spanning its planes.
+    /// The two axes that a group names as spanning its planes.
     pub(super) fn plane_of(&self, group: &str) -> Option<(usize, usize)> {
         let plane = text(&*self.group(group).ok()?, PLANE).ok()?;
         let mut axes = plane
@@ -447,7 +448,7 @@ impl MapFile {
         (plane.0 != plane.1).then_some(plane)
     }
 
-    /// The unit of degrees of stability; "1" where the map holds none.
+    /// The unit of degrees of stability; "1" for a map without any.
     #[must_use]
     pub fn degree_unit(&self) -> String {
         let group = self.group(BOUNDARIES);
@@ -462,7 +463,7 @@ fn at(index: &[usize]) -> Vec<SliceOrIndex> {
     index.iter().map(|&i| SliceOrIndex::Index(i)).collect()
 }
 
-/// The axes, checked as those of a sweep are.
+/// Reads the axes, with the same checks as those of a sweep.
 fn read_axes(
     file: &File,
     system: Option<&SystemModel>,
@@ -488,7 +489,7 @@ fn read_axes(
     Ok(axes)
 }
 
-/// The system of a file of which it is not the letter's.
+/// Reads the system of a file; none for the letter's.
 fn read_system(file: &File, path: &Path) -> Result<Option<SystemModel>, StoreError> {
     let Ok(text) = text(file, root::SYSTEM) else {
         return Ok(None);
@@ -536,7 +537,7 @@ fn transposed<T: Copy>(cells: &[T], rows: usize, columns: usize) -> Vec<T> {
         .collect()
 }
 
-/// The name that a field has in `file`: that of old maps where there is no other.
+/// The name of a field's dataset in `file`: today's, or else the one in old maps.
 fn held_name(file: &Group, field: Field) -> &'static str {
     match file.link_exists(field.name()) {
         true => field.name(),

@@ -1,4 +1,4 @@
-//! What values a map holds: as it tells, or all cells of it, read piece by piece.
+//! Summaries of a map's values: from its attributes, or from all cells, read piece by piece.
 
 use hdf5::{Dataset, SliceOrIndex};
 
@@ -11,10 +11,11 @@ use crate::sweep::Field;
 use crate::sweep::input::field::Storage;
 
 impl MapFile {
-    /// What values a field has: as the map tells, or read piece by piece from one that does not.
+    /// The summary of a field's values: from the map's attributes, or from all cells where it has
+    /// none.
     ///
     /// # Errors
-    /// When the map does not hold the field, or is damaged.
+    /// When the map lacks the field or is damaged.
     pub fn summary(&self, field: Field) -> Result<FieldSummary, StoreError> {
         match FieldSummary::told(&self.of_field(field)?, field.storage(), self.cells()) {
             Some(told) => Ok(told),
@@ -22,7 +23,7 @@ impl MapFile {
         }
     }
 
-    /// What the statuses of all cells say, likewise.
+    /// The counts of the statuses of all cells, from the attributes or from all cells.
     ///
     /// # Errors
     /// When the file is damaged.
@@ -33,7 +34,7 @@ impl MapFile {
         }
     }
 
-    /// What values a field has in all cells, read piece by piece.
+    /// The summary of a field's values in all cells, read piece by piece.
     pub(crate) fn summary_of_cells(&self, field: Field) -> Result<FieldSummary, StoreError> {
         let dataset = self.of_field(field)?;
         match field.storage() {
@@ -58,7 +59,7 @@ impl MapFile {
         Ok(sum)
     }
 
-    /// What the statuses of all cells say, read piece by piece.
+    /// The counts of the statuses of all cells, read piece by piece.
     pub(crate) fn statuses_of_cells(&self) -> Result<StatusCounts, StoreError> {
         let dataset = self.dataset(STATUS)?;
         let mut counts = StatusCounts::default();
@@ -70,11 +71,10 @@ impl MapFile {
     }
 }
 
-/// Cells that are read at once, at most.
+/// The most cells read at once.
 const MOST_AT_ONCE: usize = 1 << 22;
 
-/// The shape of the pieces in which to read a dataset: its chunks, or parts of them where they are
-/// huge.
+/// The shape of the pieces in which a dataset is read: its chunks, or parts of huge ones.
 fn piece_shape(dataset: &Dataset) -> Vec<usize> {
     let shape = dataset.shape();
     let chunk = dataset.chunk().filter(|c| c.len() == shape.len());
@@ -83,7 +83,7 @@ fn piece_shape(dataset: &Dataset) -> Vec<usize> {
         *length = (*length).clamp(1, whole.max(1));
     }
     for axis in 0..piece.len() {
-        // The lengths behind are no longer than those of the map, whose cells can be counted.
+        // This product does not overflow: it is at most the number of cells of the map.
         let behind: usize = piece[axis + 1..].iter().product();
         piece[axis] = piece[axis].min((MOST_AT_ONCE / behind).max(1));
     }
@@ -111,8 +111,8 @@ pub(super) fn for_each_chunk<E>(
     })
 }
 
-/// The pieces of a box with these lengths, last axis fastest: the first index along every axis and
-/// the number of cells inside the box.
+/// Visits the pieces of a box with the lengths `shape`, last axis fastest. `visit` gets the first
+/// index and the number of cells inside the box, along every axis.
 pub(super) fn for_each_piece<E>(
     shape: &[usize],
     piece: &[usize],

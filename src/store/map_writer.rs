@@ -30,8 +30,8 @@ use crate::sweep::input::field::Storage;
 use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::plan::tile::Tile;
 
-/// A map on its way to disk: under its final name after [`MapWriter::finish`], gone if dropped
-/// before.
+/// A map that is being written. [`MapWriter::finish`] gives it its final name; dropped before that,
+/// it is removed.
 pub struct MapWriter<'p> {
     plan: &'p Plan,
     // Before `output`: the file is closed before its temporary name is removed.
@@ -41,7 +41,7 @@ pub struct MapWriter<'p> {
     best: Option<BestWriter>,
     /// The datasets of cells, in the order in which encoders give their chunks.
     cells: Vec<Cells>,
-    /// What values they have so far.
+    /// Summary of the values written so far.
     summary: CellsSummary,
     output: Output,
 }
@@ -88,7 +88,7 @@ impl<'p> MapWriter<'p> {
         })
     }
 
-    /// Appends the curves of the plane at `index`. Planes come in their order.
+    /// Appends the curves of the plane at `index`. Planes must come in order.
     pub(crate) fn put_curves(
         &mut self,
         index: &[usize],
@@ -102,14 +102,14 @@ impl<'p> MapWriter<'p> {
         appended.map_err(StoreError::hdf5("write", self.output.path()))
     }
 
-    /// Appends the best setting of a plane. Planes come in their order.
+    /// Appends the best setting of a plane. Planes must come in order.
     pub(crate) fn put_best(&mut self, row: &BestRow) {
         if let Some(best) = &mut self.best {
             best.append(row);
         }
     }
 
-    /// Puts the compressed chunks of a tile. Tiles come in their order.
+    /// Writes the compressed chunks of a tile. Tiles must come in order.
     pub(crate) fn put_tile(
         &mut self,
         tile: &Tile,
@@ -130,13 +130,13 @@ impl<'p> MapWriter<'p> {
         self.cells.len()
     }
 
-    /// Says how many cells the map lacks.
+    /// Records how many cells the map lacks.
     pub(crate) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
         let put = put_numbers(&self.file, root::CELLS_MISSING, &[cells]);
         put.map_err(StoreError::hdf5("write", self.output.path()))
     }
 
-    /// Says what values the cells have; of integers also what stands where there is no value.
+    /// Writes the summaries of the cells, and fill values for integers where a value is missing.
     fn put_summary(&mut self) -> hdf5::Result<()> {
         let cells = self.plan.cells();
         let fields = &self.plan.spec.fields;
@@ -165,8 +165,8 @@ impl<'p> MapWriter<'p> {
     /// gives it its final name.
     ///
     /// # Errors
-    /// When it is to stop, or the system or the library refuses; nothing then stands under the
-    /// final name that was not there before.
+    /// When `stop` is set, or the system or the library refuses. The final name then has what it
+    /// had before.
     pub fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
         let mut close = || -> hdf5::Result<()> {
@@ -194,7 +194,7 @@ impl<'p> MapWriter<'p> {
             return Err(StoreError::Stopped);
         }
         closed.map_err(StoreError::hdf5("write", &path))?;
-        // All handles, so that the file is closed before it is renamed.
+        // Drop all handles, so that the file is closed before it is renamed.
         drop((self.cells, self.boundaries, self.best, self.dimensions));
         self.file
             .close()
@@ -216,15 +216,15 @@ impl<'p> MapWriter<'p> {
     }
 }
 
-/// A new file, with all orders kept. Nothing may stand at `path`.
+/// A new file that keeps the order of attributes and links. Nothing may stand at `path`.
 ///
-/// Without a sieve buffer every write of values is one of the system's, whose errors are told at
-/// once: what a buffer holds when its dataset is closed is lost without a word where the system
-/// refuses it.
+/// There is no sieve buffer, so each write of values is a write by the system, whose errors are
+/// reported at once. A buffer is written when its dataset is closed, and an error is then silently
+/// lost.
 pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
         .with_fapl(|fapl| {
-            // Object headers and indexes of chunks have checksums from 1.10 on.
+            // From version 1.10 on, object headers and chunk indexes have checksums.
             let version = LibraryVersion::V110;
             fapl.sieve_buf_size(0).libver_bounds(version, version)
         })

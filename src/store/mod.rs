@@ -11,29 +11,29 @@
 //! - `best_reader`: reads the best settings of a map
 //! - `best_writer`: best settings of every plane as a group with the map's dimensions
 //! - `boundary_writer`: curves as CF contiguous ragged arrays
-//! - `cell_blocks`: cells in the order of the axes, some at a time
-//! - `chunk_layout`: how chunks are stored, and their values: inflated to their own size and no
-//!   further
+//! - `cell_blocks`: reads cells in the order of the axes, block by block
+//! - `chunk_layout`: how chunks are stored, and how to decode them; a chunk is inflated to its own
+//!   size and no further
 //! - `codec`: HDF5's shuffle and deflate on the computing threads
-//! - `columns`: the columns of a map, chunk by chunk as they stand in the file
+//! - `columns`: the columns of a map, chunk by chunk as stored in the file
 //! - `contents_hash`: a hash of everything in a map besides its cells
 //! - `curve_reader`: reads the crossing curves of a map
-//! - `curve_rows`: the curves of a plane as rows of numbers; a line for every column of them, for
-//!   the tiles, the map and its reader
+//! - `curve_rows`: the curves of a plane as columns of numbers, declared once for the tiles, the
+//!   map and its reader
 //! - `describe`: what a file says of itself: who made it, the sweep, the friction law, parameters
 //! - `durable`: files written whole, synced and renamed
 //! - `error`: why a map or trace could not be written or read, with the file's name and the cause
 //! - `lock`: locks that end with the process that holds them
-//! - `map_summary`: ranges and counts as a map tells them, or from all its cells, piece by piece
+//! - `map_summary`: ranges and counts, from a map's attributes or from all its cells
 //! - `netcdf`: dimension scales as netCDF-4 readers expect them
-//! - `open`: the one door to HDF5 files and what is in them: nothing that leads elsewhere, loads
-//!   code or is stored otherwise
-//! - `sample`: which cells second methods look at: of every outcome by every method
-//! - `seal`: a checksum of all bytes of a map, behind them
+//! - `open`: the only way to open HDF5 files and their objects; it refuses links to other files,
+//!   filter plugins and foreign storage
+//! - `sample`: which cells are checked by a second method: some of every outcome by every method
+//! - `seal`: a checksum of all bytes of a map, appended to the file
 //! - `soundness`: whether a map's file is as it was written: schema, checksums
 //! - `source`: where the pieces of a map come from; pieces in memory
-//! - `stamp`: what the system says of a file
-//! - `summary`: ranges of fields, counts of kinds and flags: counted with each tile, told by
+//! - `stamp`: the length, time and node of a file, to detect changes
+//! - `summary`: ranges of fields, counts of kinds and flags: counted with each tile, stored as
 //!   attributes
 //! - `trace_reader`: recognises traces and reads them
 //! - `values`: reads values, chunk by chunk

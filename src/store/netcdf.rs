@@ -16,7 +16,7 @@ struct ScaleUse {
     dimension: u32,
 }
 
-/// A dimension of the file: its scale, and who uses it.
+/// A dimension of the file: its scale, and the datasets that use it.
 pub(super) struct Dimension {
     scale: Dataset,
     uses: Vec<(Dataset, u32)>,
@@ -33,8 +33,8 @@ pub(super) struct Dimensions {
 pub(super) struct DimensionId(usize);
 
 impl Dimensions {
-    /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` none: one
-    /// with coordinates.
+    /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` is none for a
+    /// scale with coordinates.
     pub(super) fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
         put_text(&scale, "CLASS", "DIMENSION_SCALE")?;
         let path = scale.name();
@@ -48,7 +48,7 @@ impl Dimensions {
         Ok(DimensionId(self.list.len() - 1))
     }
 
-    /// A dimension without coordinates, extended as data come.
+    /// Adds a dimension without coordinates that grows with the data.
     pub(super) fn add_bare(&mut self, group: &Group, name: &str) -> hdf5::Result<DimensionId> {
         let scale = named(group.new_dataset_builder())
             .empty::<f32>()
@@ -66,7 +66,7 @@ impl Dimensions {
         &self.list[id.0].scale
     }
 
-    /// Says that `dataset` has these dimensions, in order.
+    /// Attaches these dimensions to `dataset`, in order.
     pub(super) fn attach(
         &mut self,
         dataset: &Dataset,
@@ -82,7 +82,8 @@ impl Dimensions {
         put_numbers(dataset, "DIMENSION_LIST", &lists)
     }
 
-    /// Writes for each scale who uses it. To be called once, when all datasets are attached.
+    /// Writes, for each scale, the datasets that use it. Called once, when all datasets are
+    /// attached.
     pub(super) fn finish(&self) -> hdf5::Result<()> {
         for dimension in self.list.iter().filter(|d| !d.uses.is_empty()) {
             let uses: hdf5::Result<Vec<ScaleUse>> = dimension
@@ -101,8 +102,8 @@ impl Dimensions {
     }
 }
 
-/// A builder with what every dataset needs: the order of its attributes kept (netCDF asks for it),
-/// no time stamps.
+/// A builder with the settings of every dataset: no time stamps, and attributes in order of
+/// creation, as netCDF requires.
 pub(super) fn named(builder: DatasetBuilder) -> DatasetBuilder {
     builder
         .attr_creation_order(AttrCreationOrder::Indexed)

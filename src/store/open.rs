@@ -1,5 +1,5 @@
-//! Opens HDF5 files to read them, and says why not. What it lets through leads to no other file,
-//! loads no code, and asks for no more memory than slipmap's own files do.
+//! Opens HDF5 files to read them, or says why not. An opened object leads to no other file, loads
+//! no code, and takes no more memory than slipmap's own files do.
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 use std::io::Read;
@@ -19,25 +19,25 @@ use hdf5_sys::h5z::{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE};
 use super::error::StoreError;
 use super::lock;
 
-/// The most bytes of a chunk: four times what slipmap writes. A larger one is refused.
+/// The most bytes of a chunk: four times what slipmap writes. Larger chunks are refused.
 const MOST_OF_CHUNK: usize = 8 << 20;
-/// The most members of a group: several times what any map holds. More are refused.
+/// The most members of a group: several times what any map holds. Larger groups are refused.
 const MOST_NAMES: usize = 1000;
-/// HDF5's number of its filter that puts bytes of like places together.
+/// HDF5's number of the shuffle filter.
 pub(super) const SHUFFLE: c_int = H5Z_FILTER_SHUFFLE;
-/// The number of the filter that deflates.
+/// HDF5's number of the deflate filter.
 pub(super) const DEFLATE: c_int = H5Z_FILTER_DEFLATE;
 
 unsafe extern "C" {
-    /// The binding declares this function with a pointer, which the library does not take.
+    /// The binding declares a pointer parameter, which the library's function does not have.
     fn H5PLset_loading_state(kinds: c_uint) -> i32;
 }
 
-/// Filters are never looked for in other files, and links to other files are not followed, by
-/// whatever call.
+/// Confines every call of the library to the opened file: it loads no filter plugins and follows no
+/// external links.
 static CONFINED: LazyLock<bool> = LazyLock::new(|| {
     hdf5::sync::sync(|| {
-        // SAFETY: both take numbers alone; the calls run under the library's lock.
+        // SAFETY: both functions take only numbers; the calls run under the library's lock.
         unsafe {
             H5PLset_loading_state(0) >= 0 && H5Lunregister(H5L_type_t::H5L_TYPE_EXTERNAL) >= 0
         }
@@ -51,7 +51,8 @@ fn begins_as_hdf5(path: &Path) -> bool {
     read.is_ok() && signature == *b"\x89HDF\r\n\x1a\n"
 }
 
-/// Opens the file at `path`; `refuse` says that it is not what is looked for, and why.
+/// Opens the file at `path`. `refuse` makes the error for a file of the wrong kind, with the
+/// reason.
 pub(super) fn to_read(
     path: &Path,
     refuse: impl Fn(&Path, String) -> StoreError,
@@ -72,7 +73,7 @@ pub(super) fn to_read(
         let why = "the HDF5 library here cannot be kept from opening other files";
         return Err(refuse(path, why.into()));
     }
-    // The library locks what it writes. A lock that is gone now may have been there a moment ago.
+    // The library locks the files that it writes. The lock may have been released a moment ago.
     let once_more = |refused| match lock::is_held(path) {
         true => Err(refused),
         false => File::open(path),
@@ -95,16 +96,16 @@ pub(super) fn to_read(
     Ok(file)
 }
 
-/// Why a group cannot be read.
+/// Refuses a group whose names are compressed.
 fn vet_group(group: &Group) -> hdf5::Result<()> {
-    // The library would inflate the names themselves.
+    // The library would inflate the names itself, without a limit.
     match filters(group.create_plist()?.id())[..] {
         [] => Ok(()),
         _ => Err("the names in it are compressed".into()),
     }
 }
 
-/// A group of another, by its name.
+/// Opens a group inside another, by its name.
 ///
 /// # Errors
 /// Where it is missing, in another place or file, or cannot be read.
@@ -115,7 +116,7 @@ pub(super) fn group(of: &Group, name: &str) -> hdf5::Result<Group> {
     Ok(group)
 }
 
-/// A dataset of a group, by its name.
+/// Opens a dataset of a group, by its name.
 ///
 /// # Errors
 /// Where it is missing, in another place or file, or not stored as slipmap stores datasets.
@@ -133,16 +134,16 @@ fn refuse_links(group: &Group, name: &str) -> hdf5::Result<()> {
     Ok(())
 }
 
-/// The names in a group, of links of all kinds, which are not followed.
+/// The names in a group: links of all kinds, none of which is followed.
 ///
 /// # Errors
-/// Where there are more of them than in any map, or they are not UTF-8.
+/// Where there are more than in any map, or one is not UTF-8.
 pub(super) fn names(group: &Group) -> hdf5::Result<Vec<String>> {
     let mut names: Vec<Option<String>> = Vec::new();
     let told = hdf5::sync::sync(|| {
-        // SAFETY: the group is open, and `add_name` gets the vector that it expects. In another
-        // than the native order the library gathers all links first, and frees what it never had
-        // where one of them is damaged.
+        // SAFETY: the group is open, and `add_name` gets the vector that it expects. The native
+        // order is deliberate: for any other, the library gathers all links first, and frees memory
+        // that it never allocated where a link is damaged.
         unsafe {
             H5Literate(
                 group.id(),
@@ -171,8 +172,8 @@ unsafe extern "C" fn add_name(
     _: *const H5L_info_t,
     names: *mut c_void,
 ) -> c_int {
-    // SAFETY: the library gives a string that ends in a null byte, and the pointer that it was
-    // given, to a vector that lives.
+    // SAFETY: the library passes a null-terminated string and the pointer that it was given, which
+    // points to a live vector.
     let (name, names) = unsafe {
         let names = names.cast::<Vec<Option<String>>>().as_mut();
         (CStr::from_ptr(name), names)
@@ -196,13 +197,13 @@ fn is_hard(group: &Group, name: &str) -> bool {
         // SAFETY: the group is open, the name ends in a null byte, and the library fills in `link`.
         unsafe { H5Lget_info1(group.id(), name.as_ptr(), link.as_mut_ptr(), H5P_DEFAULT) }
     });
-    // SAFETY: the kind comes first. A file may hold kinds that the binding's enum does not, so it
-    // is read as a number.
+    // SAFETY: the kind is the first member. A file may hold kinds that the binding's enum lacks, so
+    // it is read as a number.
     let kind = unsafe { link.as_ptr().cast::<c_int>().read() };
     asked >= 0 && kind == H5L_type_t::H5L_TYPE_HARD as c_int
 }
 
-/// The filters through which the chunks of a dataset go.
+/// The filters of the chunks of a dataset.
 pub(super) fn filters_of(dataset: &Dataset) -> hdf5::Result<Vec<c_int>> {
     Ok(filters(dataset.create_plist()?.id()))
 }
@@ -210,7 +211,7 @@ pub(super) fn filters_of(dataset: &Dataset) -> hdf5::Result<Vec<c_int>> {
 /// The filters that a property list names.
 fn filters(plist: hid_t) -> Vec<c_int> {
     hdf5::sync::sync(|| {
-        // SAFETY: the property list is open, and all that is not asked for is null or has the
+        // SAFETY: the property list is open; results that are not needed get a null pointer or the
         // length 0.
         unsafe {
             let count = H5Pget_nfilters(plist).max(0);

@@ -1,4 +1,4 @@
-//! A map's way to its final name: a lock beside it, a temporary name, one rename at the end.
+//! How a map gets its final name: a lock beside it, a temporary name, one rename at the end.
 
 use std::fs::{self, File};
 use std::io::ErrorKind;
@@ -8,8 +8,8 @@ use super::durable::{rename_synced, sync};
 use super::error::StoreError;
 use super::lock;
 
-/// The place of a map that is being written. Dropped before [`Output::commit`], it leaves nothing
-/// behind.
+/// The place of a map that is being written. If dropped before [`Output::commit`], it leaves
+/// nothing behind.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -18,7 +18,7 @@ pub struct Output {
     lock: Option<File>,
 }
 
-/// A hidden file beside `path`, named so that no other program uses it.
+/// A hidden file beside `path`, with a name that no other program uses.
 #[must_use]
 pub fn hidden_beside(path: &Path, purpose: &str) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -48,7 +48,7 @@ impl Output {
             });
         };
         let part = hidden_beside(path, "part");
-        // What a run that died left, or a link: the file that is written to is always a new one.
+        // A leftover of a run that died, or a link: the file to write must be new.
         if part.symlink_metadata().is_ok() {
             fs::remove_file(&part).map_err(StoreError::io("replace", &part))?;
         }
@@ -72,8 +72,8 @@ impl Output {
         &self.part
     }
 
-    /// Makes the written file durable and gives it its final name, and the permissions of what
-    /// stood there, which it replaces.
+    /// Makes the written file durable and gives it its final name. It replaces the file that stood
+    /// there and takes over its permissions.
     ///
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.

@@ -1,5 +1,5 @@
-//! Which cells of a map second methods look at: spread over the map, and as many of every outcome
-//! by every method as of the others, however rare they are.
+//! Chooses the cells that are checked by a second method: spread over the map, and equally many of
+//! each outcome by each method, however rare.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use crate::sweep::Field;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{mixed, spread};
 
-/// What tells cells of one sort from those of another.
+/// The fields by which cells are sorted.
 const SORTS: [Field; 2] = [Field::Outcome, Field::Method];
 
-/// The numbers of `count` cells at most, all cells counted row by row.
+/// The numbers of at most `count` cells, counted row by row over the map.
 ///
 /// # Errors
 /// When the map cannot be read.
@@ -40,11 +40,11 @@ pub(crate) fn sample(map: &MapFile, plan: &Plan, count: u64) -> Result<Vec<u64>,
     Ok(sorts.in_turn())
 }
 
-/// The cells of each sort that come first in a fixed order by chance.
+/// The first cells of each sort in a fixed pseudo-random order.
 struct Sorts {
-    /// Cells of a sort that are kept.
+    /// The most cells kept of each sort.
     most: usize,
-    /// By outcome and method: place in that order, and the cell's number.
+    /// By outcome and method: the place in that order, and the cell's number.
     cells: BTreeMap<[u8; SORTS.len()], BTreeSet<(u64, u64)>>,
 }
 
@@ -76,7 +76,7 @@ impl Sorts {
         Ok(())
     }
 
-    /// One cell of every sort after the other.
+    /// The cells in turn: one of each sort, then the next of each.
     fn in_turn(self) -> Vec<u64> {
         let mut sorts: Vec<_> = self.cells.into_values().map(BTreeSet::into_iter).collect();
         let mut numbers = Vec::new();
@@ -94,7 +94,7 @@ impl Sorts {
     }
 }
 
-/// Where a slab begins, and its lengths.
+/// The first indices of a slab, and its lengths.
 fn extent(slab: &[SliceOrIndex]) -> (Vec<usize>, Vec<usize>) {
     let range = |part: &SliceOrIndex| match *part {
         SliceOrIndex::SliceTo { start, end, .. } => (start, end - start),
@@ -105,7 +105,7 @@ fn extent(slab: &[SliceOrIndex]) -> (Vec<usize>, Vec<usize>) {
     slab.iter().map(range).unzip()
 }
 
-/// The number in a map of this shape of the `cell`-th cell of a slab, both counted row by row.
+/// The number in a map of shape `shape` of the `cell`-th cell of a slab, both counted row by row.
 fn number_in_map(mut cell: usize, (starts, lengths): (&[usize], &[usize]), shape: &[usize]) -> u64 {
     let (mut number, mut unit) = (0, 1);
     for ((start, length), whole) in starts.iter().zip(lengths).zip(shape).rev() {

@@ -1,16 +1,16 @@
-//! Names in a map or trace file that are not those of a parameter or field, and the version of its
-//! format.
+//! Names in a map or trace file other than those of parameters and fields, and the versions of the
+//! formats.
 
-/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every
-/// curve. 3: indexes with checksums, and a seal behind the file. 4: the fields `vc_lower` and
-/// `vc_upper`, by which the regime and `v_smooth` decide. 5: the field `regime`, `class` before,
-/// and integers without `_FillValue` where no cell is missing. 6: motions without a start begin
-/// faster than they are pulled, see [`DISTURBED_SINCE`]; the field `last_release`.
+/// Version of the map format that is written. 2: [`DEGREE_OF_STABILITY`] of every curve. 3: indexes
+/// with checksums, and a seal at the end of the file. 4: the fields `vc_lower` and `vc_upper`, from
+/// which the regime and `v_smooth` follow. 5: `class` is renamed `regime`, and integers have no
+/// `_FillValue` where no cell is missing. 6: motions without a given start begin faster than they
+/// are pulled, see [`DISTURBED_SINCE`]; the field `last_release`.
 pub const FORMAT_VERSION: i32 = 6;
 /// The first version with a seal.
 pub const SEALED_SINCE: i32 = 3;
-/// The first version in which a sweep without a start disturbs its motions; before, they began on
-/// their equilibrium.
+/// The first version in which motions without a given start are disturbed. Before, they began in
+/// equilibrium.
 pub const DISTURBED_SINCE: i32 = 6;
 /// The oldest version that is still read; readers refuse older and newer ones.
 pub const OLDEST_FORMAT_VERSION: i32 = 1;
@@ -18,7 +18,7 @@ pub const OLDEST_FORMAT_VERSION: i32 = 1;
 /// Conventions that a map follows.
 pub const CONVENTIONS: &str = "CF-1.11";
 
-/// Version of the layout of a trace, which is written. 2: see [`RELEASED_SINCE_SWITCH_ON`].
+/// Version of the trace format that is written. 2: see [`RELEASED_SINCE_SWITCH_ON`].
 pub const TRACE_FORMAT_VERSION: i32 = 2;
 /// The first version in which `last_release` counts from switch-on, as `settle_time` does. Before,
 /// it counted from t = 0.
@@ -36,15 +36,15 @@ pub mod trace {
     pub const OUTCOME: &str = "outcome";
     /// Group and dimension of the events.
     pub const EVENT: &str = "event";
-    /// The dimension: time. In the group of events: when.
+    /// The dimension: time. In the group of events: the time of each event.
     pub const TIME: &str = "t";
-    /// What the block does from a sample on.
+    /// The mode of the block from a sample on.
     pub const MODE: &str = "mode";
     /// Of events: what happens.
     pub const KIND: &str = "kind";
-    /// Of events: the elongation then.
+    /// Of events: the elongation at that time.
     pub const ELONGATION: &str = "a";
-    /// Root attribute: steps taken until the outcome was known.
+    /// Root attribute: number of steps taken until the outcome was known.
     pub const STEPS: &str = "steps";
 }
 
@@ -70,20 +70,20 @@ pub mod root {
     pub const HISTORY: &str = "history";
     /// Number of cells that are not computed yet; absent in a complete map.
     pub const CELLS_MISSING: &str = "cells_missing";
-    /// By which share of v0 blocks are faster than they are pulled at t = 0, where the sweep of
-    /// their motions says no start; absent where it says one.
+    /// The share of v0 by which blocks are faster than they are pulled at t = 0, where the sweep
+    /// gives no start; absent where it gives one.
     pub const DISTURBANCE: &str = "disturbance";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
-    /// [`crate::sweep::input::search::LIMIT`], where it is a map of that limit.
+    /// [`crate::sweep::input::search::LIMIT`], for a map of that limit.
     pub const PROTOCOL: &str = "protocol";
-    /// The text of the system, where it is not the letter's, as a system file has it.
+    /// The text of the system in the form of a system file; absent for the letter's system.
     pub const SYSTEM: &str = "system";
     /// Name of the friction law, where there is one.
     pub const FRICTION_LAW: &str = "friction_law";
     /// Speeds of the points of a friction law from a table.
     pub const FRICTION_SPEEDS: &str = "friction_speeds";
-    /// μ_K at these.
+    /// μ_K at these speeds.
     pub const FRICTION_MU_K: &str = "friction_mu_k";
 }
 
@@ -91,18 +91,18 @@ pub mod root {
 /// last dimension fastest.
 pub const CHUNKS_SHA256: &str = "chunks_sha256";
 
-/// Root attribute: SHA-256 over everything in the map besides the cells, the references between
+/// Root attribute: SHA-256 over everything in the map except the cells, the references between
 /// datasets and the history.
 pub const CONTENTS_SHA256: &str = "contents_sha256";
 
-/// Attributes of datasets of cells that tell what values these have; numbers of cells are u64.
+/// Attributes that summarise the values of a dataset of cells; counts of cells are u64.
 pub mod summary {
-    /// The smallest and the largest value, infinite ones among them, in the type of the cells. CF's
-    /// name for it.
+    /// The smallest and the largest value, including infinite ones, in the type of the cells. The
+    /// name is from the CF conventions.
     pub const ACTUAL_RANGE: &str = "actual_range";
-    /// The smallest and the largest finite one, of reals.
+    /// The smallest and the largest finite value; reals only.
     pub const FINITE_RANGE: &str = "finite_range";
-    /// Number of values of −∞, and of +∞, of reals.
+    /// Number of cells with −∞ and with +∞; reals only.
     pub const INFINITE: &str = "cells_infinite";
     /// Number of cells without a value.
     pub const WITHOUT_VALUE: &str = "cells_without_value";
@@ -120,7 +120,7 @@ pub const BOUNDARIES: &str = "boundaries";
 /// Name of the group of best settings.
 pub const BEST: &str = "best";
 
-/// Variables of that group, besides the gain and the delay.
+/// Variables of the group of best settings, besides the gain and the delay.
 pub mod best {
     /// The spectral abscissa.
     pub const ABSCISSA: &str = "abscissa";
@@ -136,10 +136,10 @@ pub mod best {
     pub const REGIONS: &str = "regions";
 }
 
-/// Value of the flags and counts of that group where nothing was found.
+/// Value of the flags and counts in the group of best settings where nothing was found.
 pub const BEST_FLAG_FILL: i8 = -1;
 
-/// Attribute of both groups: the two axes that span the planes, the parameter and the delay.
+/// Attribute of both groups: the two axes that span the planes, the first parameter and the delay.
 pub const PLANE: &str = "plane";
 
 /// σ of each curve: roots on it have Re λ = −σ. Absent before format version 2, where it is 0.
@@ -147,19 +147,19 @@ pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
 pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
 
-/// Attributes of fields of many starts.
+/// Attributes of fields over many starts.
 pub mod basin {
-    /// Which starts there are: states, or phases of the uncontrolled cycle.
+    /// What the starts are: states, or phases of the uncontrolled cycle.
     pub const OVER: &str = "over";
-    /// How many.
+    /// Number of starts.
     pub const STARTS: &str = "starts";
-    /// Independent scramblings of their sequence.
+    /// Number of independent scramblings of their sequence.
     pub const SCRAMBLINGS: &str = "scramblings";
-    /// What there is of them, in words.
+    /// The region of the starts, in words.
     pub const REGION: &str = "region";
-    /// Their velocities from and to, where the sweep gives these.
+    /// The range of their velocities, where the sweep gives it.
     pub const X_DOT0: &str = "x_dot0_range";
-    /// Their elongations from and to, where the sweep gives these.
+    /// The range of their elongations, where the sweep gives it.
     pub const A0: &str = "a0_range";
 }
 
@@ -167,12 +167,12 @@ pub mod basin {
 pub mod vc {
     /// Name of the protocol.
     pub const PROTOCOL: &str = "protocol";
-    /// Of how many phases the worst counts, where it does.
+    /// Number of phases among which the worst counts, for that protocol.
     pub const PHASES: &str = "phases";
-    /// The largest v0 at which stick-slip was looked for, in [`V_MAX_UNIT`].
+    /// The largest v0 of the search for stick-slip, in [`V_MAX_UNIT`].
     pub const V_MAX: &str = "v_max";
-    /// The unit of that, in words of the map.
+    /// The unit of [`V_MAX`], in the words of the map.
     pub const V_MAX_UNIT: &str = "v_max_unit";
-    /// To what velocities are known, relative.
+    /// Relative precision of the velocities.
     pub const PRECISION: &str = "precision";
 }

@@ -1,8 +1,8 @@
-//! The seal of a map: a checksum of all its bytes, in a line of text behind them.
+//! The seal of a map: a checksum of all its bytes, in a line of text at the end of the file.
 //!
-//! HDF5 has checksums of its own for most of what describes the data, and a map has one of its
-//! values and texts; references between datasets, and anything else in the file, are under the seal
-//! alone. Readers do not see it. A program that opens a map to write to it drops it.
+//! HDF5 has its own checksums for most of its metadata, and a map has checksums of its values and
+//! texts. Everything else, such as references between datasets, is covered by the seal alone. HDF5
+//! readers do not see it. A program that opens a map to write to it removes it.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -13,26 +13,26 @@ use sha2::{Digest, Sha256};
 
 use crate::sweep::plan::in_hexadecimal;
 
-/// What comes before the digest.
+/// The text before the digest.
 const BEFORE: &[u8] = b"\nslipmap map, sha256 of all before this line: ";
-/// Bytes of a seal: a digest in hexadecimal, and the end of the line.
+/// Bytes of a seal: the text, a digest in hexadecimal, and the end of the line.
 const LENGTH: usize = BEFORE.len() + 64 + 1;
-/// Bytes that are read at once.
+/// Bytes read at once.
 const BLOCK: usize = 1 << 20;
 
-/// What a file's last bytes say.
+/// The state of a file's seal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seal {
     /// All bytes are those that were sealed.
     Whole,
-    /// Some are not.
+    /// Some bytes have changed.
     Broken,
     /// There is no seal.
     Missing,
 }
 
-/// Puts the seal behind a file that is closed, and reads it back. Once `stop` is set, no more is
-/// read, and what is put is no seal.
+/// Appends the seal to a closed file and reads it back. Once `stop` is set, reading ends, and what
+/// is appended is no valid seal.
 ///
 /// # Errors
 /// When the system refuses, or does not give back what was written.
@@ -47,7 +47,7 @@ pub(super) fn put(path: &Path, stop: &AtomicBool) -> io::Result<()> {
     }
 }
 
-/// The bytes where a seal would be, and how many are before them.
+/// The number of bytes before the place of a seal, and the bytes there.
 fn last(file: &mut File) -> io::Result<(u64, [u8; LENGTH])> {
     let mut found = [0; LENGTH];
     let before = file.metadata()?.len().saturating_sub(LENGTH as u64);
@@ -56,9 +56,9 @@ fn last(file: &mut File) -> io::Result<(u64, [u8; LENGTH])> {
     Ok((before, found))
 }
 
-/// Whether a file is as it was sealed.
+/// Checks a file against its seal.
 ///
-/// Once `stop` is set, no more is read, and the answer means nothing.
+/// Once `stop` is set, reading ends and the answer is meaningless.
 ///
 /// # Errors
 /// When it cannot be read.

@@ -1,4 +1,4 @@
-//! Whether the file of a map is as it was written: its schema against its sweep, its checksums.
+//! Checks that the file of a map is as it was written: its schema against its sweep, its checksums.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -17,39 +17,39 @@ use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
 use crate::sweep::plan::{Plan, in_hexadecimal};
 
-/// A child that is being started shares the library's lock on a file until it runs its own program:
-/// no longer than this.
+/// The longest wait for the library's lock on a file. A child process that is being started shares
+/// the lock until it runs its own program.
 const FORKED: Duration = Duration::from_secs(2);
 
-/// What was found out about a map.
+/// The result of checking a map.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Everything that is wrong, in words; empty for a sound map.
     pub faults: Vec<String>,
     /// What could not be checked, and why.
     pub remarks: Vec<String>,
-    /// Checksums that fit: one of each dataset of cells, one of everything else.
+    /// Number of checksums that fit: one of each dataset of cells, one of everything else.
     pub checksums: u64,
-    /// Cells at which second methods looked.
+    /// Number of cells checked by a second method.
     pub cells: u64,
-    /// For each question: answers that agree, that differ, that stay open.
+    /// For each question: how many answers agree, differ, and stay open.
     pub answers: Vec<(Question, [u64; 3])>,
     /// Tiles that were computed again.
     pub tiles: u64,
     /// Tiles that were computed again with the same bytes.
     pub tiles_equal: u64,
-    /// Tiles that were chosen for the check but are missing, in a map that is not complete.
+    /// Tiles that were chosen for the check but are missing from a partial map.
     pub tiles_absent: u64,
 }
 
-/// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there;
-/// else what is wrong first. Once `stop` is set, no more is read, and the answer means nothing.
+/// Checks that a file without a seal is a sound map of `plan`, perhaps with cells missing; the
+/// error is the first fault. Once `stop` is set, reading ends and the answer is meaningless.
 pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
     let map = opened(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
     check_schema(&map, plan, &mut report, stop);
     check_checksums(&map, plan, &mut report, stop);
-    // What is a remark on an old map is a fault of a new one.
+    // A remark on an old map is a fault of a new one.
     let wrong = report.faults.into_iter().chain(report.remarks).next();
     let all = map.names().count() as u64 + 1;
     match wrong {
@@ -72,7 +72,7 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
-/// The system and the parameters that are no axes are those of the sweep.
+/// Checks that the system and the parameters that are no axes are those of the sweep.
 fn check_fixed(map: &MapFile, plan: &Plan, faults: &mut Vec<String>) {
     if map.system() != plan.spec.fixed.system() {
         faults.push("its system is not that of the sweep".into());
@@ -84,8 +84,8 @@ fn check_fixed(map: &MapFile, plan: &Plan, faults: &mut Vec<String>) {
     }
 }
 
-/// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of
-/// it.
+/// Checks that axes, fields, dimensions and curves are those of `plan`. Once `stop` is set, the
+/// check is incomplete.
 pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let faults = &mut report.faults;
     let axes = &plan.spec.axes;
@@ -152,7 +152,7 @@ fn has_dimensions(map: &MapFile, name: &str) -> bool {
     list.is_some_and(|list| list.size() == map.axes().len())
 }
 
-/// Whether all bytes are those that were sealed; after `stop` is set the answer means nothing.
+/// Checks all bytes against the seal. Once `stop` is set, the answer is meaningless.
 pub(crate) fn check_seal(map: &MapFile, report: &mut Report, stop: &AtomicBool) {
     match seal::check(map.path(), stop) {
         Ok(Seal::Whole) => report.checksums += 1,
@@ -237,7 +237,7 @@ fn hash_of_chunks(dataset: &Dataset, plan: &Plan, stop: &AtomicBool) -> hdf5::Re
         if stop.load(Ordering::Relaxed) {
             return Err("stopped".into());
         }
-        // A chunk that is not there has not been computed.
+        // A missing chunk has not been computed.
         if let Some(chunk) = chunks.stored(&plan.tiles.tile(number).offset)? {
             hash.update(&chunk);
         }

@@ -7,16 +7,16 @@ use super::tiles::{Record, RecordEncoder};
 use crate::sweep::engine::Sink;
 use crate::sweep::plan::pieces::Piece;
 
-/// Gives pieces as the bytes of their records.
+/// A source of pieces, as the bytes of their records.
 pub trait Source {
-    /// The bytes of a piece; none where it is not there.
+    /// The bytes of a piece; none where the source lacks it.
     ///
     /// # Errors
-    /// When they cannot be read, or are not those that were written.
+    /// When the bytes cannot be read, or are not those that were written.
     fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError>;
 }
 
-/// Several sources as one: the first that has a piece gives it.
+/// Several sources as one: the first one with a piece gives it.
 impl<S: Source> Source for Vec<S> {
     fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
         for source in self {
@@ -28,7 +28,7 @@ impl<S: Source> Source for Vec<S> {
     }
 }
 
-/// Pieces in memory, for maps so small that no work could be lost.
+/// Pieces in memory, for maps so small that a lost computation does not matter.
 #[derive(Debug, Default)]
 pub struct InMemory(BTreeMap<Piece, Vec<u8>>);
 

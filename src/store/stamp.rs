@@ -1,17 +1,17 @@
-//! What the system says of a file: enough to see that it has changed or been replaced.
+//! The state of a file as the system reports it, to detect that it has changed or been replaced.
 
 use std::fs::Metadata;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// The state of a file: equal as long as the file is neither replaced nor written to.
+/// The state of a file. It stays equal until the file is replaced or written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
-    /// Its length in bytes.
+    /// Length in bytes.
     pub length: u64,
-    /// When it was written last, where the system knows that.
+    /// Time of the last write, where the system knows it.
     pub modified: Option<SystemTime>,
-    /// Its number in the file system; 0 where there is none.
+    /// Its inode number; 0 on systems without one.
     node: u64,
 }
 

@@ -1,6 +1,6 @@
-//! The range of values of each column of a map, and how many cells have each kind. They are counted
-//! when a tile is computed, added up when the map is written, and stored as attributes, so that no
-//! reader has to go through all cells.
+//! Summaries of the columns of a map: the range of values, and the number of cells of each kind.
+//! They are counted when a tile is computed, added up when the map is written, and stored as
+//! attributes, so that no reader has to go through all cells.
 
 use hdf5::{Dataset, H5Type};
 use serde::{Deserialize, Serialize};
@@ -15,10 +15,11 @@ use crate::sweep::cells::buffers::TileBuffers;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::{Field, Storage};
 
-/// What values a field has in some cells.
+/// Summary of a field's values in some cells.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FieldSummary {
-    /// The smallest and largest finite value; none where there is none, and of fields with kinds.
+    /// The smallest and largest finite value; none where there is no such value, and for fields
+    /// with kinds.
     pub range: Option<(f64, f64)>,
     /// Number of cells with a finite value, or a kind.
     pub finite: u64,
@@ -48,7 +49,7 @@ impl FieldSummary {
     fn of_counts<T: Copy + Ord + Default + Into<f64>>(cells: &[T], fill: T) -> Self {
         let (low, mut high) = ends(cells, fill, |value| value);
         let mut finite = cells.len() as u64;
-        // Most tiles have all their values, and one look is enough.
+        // Most tiles have a value in every cell; one pass is then enough.
         if high == fill {
             let known = |value: T| if value == fill { T::default() } else { value };
             high = ends(cells, fill, known).1;
@@ -62,7 +63,7 @@ impl FieldSummary {
         }
     }
 
-    /// Of so many kinds.
+    /// Counts cells of `kinds` kinds.
     fn of_kinds(cells: &[u8], kinds: usize) -> Self {
         // Many tiles are all of one kind.
         let first = cells.first().copied();
@@ -80,7 +81,7 @@ impl FieldSummary {
         }
     }
 
-    /// Of a field stored as u8.
+    /// Counts the cells of a field stored as u8.
     pub(super) fn of_bytes(field: Field, cells: &[u8]) -> Self {
         match field.kinds() {
             Some(kinds) => Self::of_kinds(cells, kinds.len()),
@@ -88,7 +89,7 @@ impl FieldSummary {
         }
     }
 
-    /// Of numbers of roots.
+    /// Counts numbers of roots.
     pub(super) fn of_roots(cells: &[u16]) -> Self {
         Self::of_counts(cells, N_UNSTABLE_FILL)
     }
@@ -110,13 +111,13 @@ impl FieldSummary {
         }
     }
 
-    /// How many of `cells` have no value.
+    /// How many of `cells` cells have no value.
     #[must_use]
     pub fn missing(&self, cells: u64) -> u64 {
         cells.saturating_sub(self.finite + self.infinite.iter().sum::<u64>())
     }
 
-    /// The smallest and the largest value, infinite ones among them.
+    /// The smallest and the largest value, including infinite ones.
     fn ends(&self) -> Option<(f64, f64)> {
         let [below, above] = self.infinite.map(|count| count > 0);
         let (low, high) = match self.range {
@@ -128,7 +129,7 @@ impl FieldSummary {
         Some((low, if above { f64::INFINITY } else { high }))
     }
 
-    /// Tells it of the dataset of a field of so many cells.
+    /// Writes the summary as attributes of the dataset of a field with `cells` cells.
     pub(super) fn put(&self, on: &Dataset, storage: Storage, cells: u64) -> hdf5::Result<()> {
         put_numbers(on, WITHOUT_VALUE, &[self.missing(cells)])?;
         match storage {
@@ -143,7 +144,7 @@ impl FieldSummary {
         }
     }
 
-    /// What the dataset of a field of so many cells tells; none of maps that do not tell it.
+    /// Reads the summary from the dataset of a field with `cells` cells; none for maps without it.
     pub(super) fn told(on: &Dataset, storage: Storage, cells: u64) -> Option<Self> {
         let known = cells.checked_sub(one_number(on, WITHOUT_VALUE)?)?;
         let mut told = Self {
@@ -165,15 +166,15 @@ impl FieldSummary {
     }
 }
 
-/// How many of these hold. Few are added at a time, as numbers of one byte: so it takes wide
-/// registers, and no time beside the compression of the cells.
+/// How many cells satisfy `holds`. Short runs are added up in bytes, so that the compiler can use
+/// wide registers; the time is then negligible beside compression.
 fn count<T: Copy>(cells: &[T], holds: impl Fn(T) -> bool) -> u64 {
     let of = |few: &[T]| few.iter().fold(0_u8, |n, &cell| n + u8::from(holds(cell)));
     let few = usize::from(u8::MAX);
     cells.chunks(few).map(|few| u64::from(of(few))).sum()
 }
 
-/// The smallest of these, `most` at most, and the largest that any of them counts as.
+/// The smallest cell, at most `most`, and the largest value of `as_known` over the cells.
 fn ends<T: Copy + Ord + Default>(cells: &[T], most: T, as_known: impl Fn(T) -> T) -> (T, T) {
     let ends = (most, T::default());
     cells.iter().fold(ends, |(low, high), &value| {
@@ -185,7 +186,7 @@ fn several<T: Number>(on: &Dataset, name: &str) -> Option<Vec<T>> {
     numbers(&on.attr(name).ok()?).ok()
 }
 
-/// In the type of the cells.
+/// Writes a range in the type of the cells.
 fn put_range<T: H5Type>(
     on: &Dataset,
     name: &str,
@@ -205,7 +206,7 @@ fn range<T: Number + Into<f64>>(on: &Dataset, name: &str) -> Option<(f64, f64)> 
     }
 }
 
-/// What the statuses of cells say.
+/// Counts of the statuses of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StatusCounts {
     /// Cells that are computed.
@@ -220,7 +221,7 @@ impl StatusCounts {
     /// Counts these statuses.
     #[must_use]
     pub fn of(cells: &[u8]) -> Self {
-        // Most tiles of counts have no flag at all, and one look is enough.
+        // Most tiles have no flag at all; one pass is then enough.
         if cells.iter().fold(0, |any, status| any | status) == 0 {
             let all = cells.len() as u64;
             return Self {
@@ -246,14 +247,14 @@ impl StatusCounts {
         }
     }
 
-    /// Tells them of the dataset of the statuses of so many cells.
+    /// Writes the counts as attributes of the dataset of `cells` statuses.
     pub(super) fn put(&self, on: &Dataset, cells: u64) -> hdf5::Result<()> {
         put_numbers(on, WITHOUT_VALUE, &[cells.saturating_sub(self.computed)])?;
         put_numbers(on, UNFLAGGED, &[self.unflagged])?;
         put_numbers(on, FLAG_CELLS, &self.flagged)
     }
 
-    /// What the dataset of the statuses of so many cells tells; none of maps that do not tell it.
+    /// Reads the counts from the dataset of `cells` statuses; none for maps without them.
     pub(super) fn told(on: &Dataset, cells: u64) -> Option<Self> {
         Some(Self {
             computed: cells.checked_sub(one_number(on, WITHOUT_VALUE)?)?,
@@ -263,17 +264,17 @@ impl StatusCounts {
     }
 }
 
-/// What values the cells of a tile have, or of several.
+/// Summary of the cells of one or several tiles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct CellsSummary {
-    /// Of each field, in the order of the map's datasets.
+    /// One for each field, in the order of the map's datasets.
     pub fields: Vec<FieldSummary>,
-    /// Of the statuses.
+    /// The counts of the statuses.
     pub status: StatusCounts,
 }
 
 impl CellsSummary {
-    /// Of a tile. Cells beyond the map hold fill values, which count nowhere.
+    /// Summarises a tile. Cells beyond the map hold fill values, which do not count.
     pub(crate) fn of(tile: &TileBuffers) -> Self {
         let roots = tile.n_unstable.iter().map(|n| FieldSummary::of_roots(n));
         let bytes = tile.kinds.iter();

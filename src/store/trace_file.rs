@@ -1,4 +1,4 @@
-//! Writes traces: a motion over time, its events in a group of their own, its outcome and
+//! Writes traces: a motion over time, with its events in a group of their own, and its outcome and
 //! parameters as attributes and scalars.
 
 use hdf5::plist::group_create::LinkCreationOrder;
@@ -32,7 +32,7 @@ pub const BYTES_OF_A_SAMPLE: u64 = 8 * (1 + QUANTITIES.len() as u64) + 1;
 pub struct Quantity {
     /// Name in files.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning, in words.
     pub long_name: &'static str,
     /// Powers of force, length and time in its unit.
     dimension: [i32; 3],
@@ -54,7 +54,7 @@ impl Quantity {
     }
 }
 
-/// Time and the quantities over it.
+/// Time, over which the quantities are given.
 pub const TIME: Quantity = Quantity {
     name: trace::TIME,
     long_name: "time",
@@ -99,8 +99,7 @@ pub const QUANTITIES: [Quantity; 5] = [
 /// Writes a trace under a temporary name and gives it its final one.
 ///
 /// # Errors
-/// When the system or the library refuses; nothing then stands under the final name that was not
-/// there before.
+/// When the system or the library refuses. The final name then has what it had before.
 pub fn write(
     spec: &CaseSpec,
     trace: &Trace,
@@ -226,8 +225,8 @@ impl Columns<'_> {
             .create(name)?;
         if !values.is_empty() {
             dataset.write_raw(values)?;
-            // What is still in the cache when the dataset is closed is lost without a word where
-            // the system refuses it.
+            // Data still in the cache when the dataset is closed are silently lost where the system
+            // refuses to write them.
             self.group.file()?.flush()?;
         }
         put_numbers(&dataset, FILL_VALUE, &[fill])?;

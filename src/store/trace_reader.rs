@@ -1,4 +1,4 @@
-//! Reads traces: the case, the samples, the events, what became of the motion.
+//! Reads traces: the case, the samples, the events, the outcome of the motion.
 
 use std::path::{Path, PathBuf};
 
@@ -14,26 +14,26 @@ use crate::slip::outcome::{Outcome, Summary};
 use crate::sweep::cells::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
-/// A trace that was read, whole.
+/// A trace, read into memory as a whole.
 #[derive(Debug)]
 pub struct TraceFile {
     path: PathBuf,
     file: File,
     /// The case, from its text in the file.
     pub spec: CaseSpec,
-    /// Samples, events, and what became of the motion, as they stand in the file; the number of
-    /// slips in a period does not, and is 0.
+    /// Samples, events and the outcome of the motion, as stored. The number of slips in a period is
+    /// not stored, and is 0.
     pub trace: Trace,
 }
 
-/// Whether the file at `path` can be opened and is marked as a trace, of whatever version.
+/// Whether the file at `path` can be opened and is marked as a trace, of any version.
 #[must_use]
 pub fn is_trace(path: &Path) -> bool {
     let file = open::to_read(path, StoreError::not_a_trace);
     file.is_ok_and(|file| one_number::<i32>(&file, trace::FORMAT_VERSION).is_some())
 }
 
-/// The text of the case whose trace stands at `path`.
+/// The text of the case of the trace at `path`.
 ///
 /// # Errors
 /// When there is no file, or it is no trace, or one of another format version.
@@ -100,13 +100,13 @@ impl TraceFile {
         text(&self.file, name).ok()
     }
 
-    /// A number that stands as an attribute of the root; none where it is missing.
+    /// A numeric attribute of the root; none where it is missing.
     #[must_use]
     pub fn root_number(&self, name: &str) -> Option<f64> {
         one_number(&self.file, name)
     }
 
-    /// The value of a parameter as it stands in the file; none where it is missing.
+    /// The stored value of a parameter; none where it is missing.
     #[must_use]
     pub fn parameter(&self, parameter: Parameter) -> Option<f64> {
         let dataset = open::dataset(&self.file, parameter.name()).ok()?;
@@ -117,7 +117,7 @@ impl TraceFile {
     }
 }
 
-/// A column of a group, with as many values as there are of the first column.
+/// A column of a group. It must have `rows` values, where that is given.
 fn column<T: Number>(of: &Group, name: &str, rows: Option<usize>) -> hdf5::Result<Vec<T>> {
     let damaged = |why: hdf5::Error| format!("its {name} cannot be read: {why}");
     let values = open::dataset(of, name).and_then(|dataset| match dataset.shape()[..] {
@@ -134,7 +134,7 @@ fn column<T: Number>(of: &Group, name: &str, rows: Option<usize>) -> hdf5::Resul
     }
 }
 
-/// What stands for a number in a column of kinds.
+/// The kind that a number stands for in a column of kinds.
 fn named<T: Copy>(all: &[(T, &str)], number: u8) -> hdf5::Result<T> {
     let known = all.get(usize::from(number)).map(|(value, _)| *value);
     known.ok_or_else(|| format!("it has a kind of number {number}, which there is not").into())

@@ -1,10 +1,10 @@
-//! Reads values of a dataset that [`super::open`] has let through.
+//! Reads values of a dataset that [`super::open`] has accepted.
 //!
-//! Chunks are inflated by [`super::chunk_layout`]: the library inflates whatever a chunk holds, a
-//! thousand times its bytes, before it compares that with the chunk's own size.
+//! [`super::chunk_layout`] inflates the chunks. The library would inflate whatever a chunk holds,
+//! up to a thousand times its bytes, before comparing that with the chunk's own size.
 //!
-//! Longer than most files: all that stands between the bytes of a chunk and numbers is checked as
-//! one.
+//! Longer than most files: everything between the bytes of a chunk and its numbers is checked
+//! together.
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ unsafe extern "C" {
 
 /// Numbers as they stand in maps: little-endian.
 pub(super) trait Number: H5Type + Copy + Default {
-    /// The number of these bytes, as many as it has.
+    /// The number in these little-endian bytes, of its own size.
     fn of(bytes: &[u8]) -> Self;
 }
 
@@ -48,7 +48,7 @@ pub(super) fn is_of<T: H5Type>(kind: &hdf5::Result<Datatype>) -> bool {
     Datatype::from_type::<T>().is_ok_and(|asked| asked == *kind)
 }
 
-/// Indices along an axis that are read.
+/// The indices to read along one axis.
 #[derive(Debug, Clone, Copy)]
 struct Picked {
     start: usize,
@@ -81,7 +81,8 @@ impl Picked {
         self.start + number * self.step
     }
 
-    /// The chunks that hold some of them, by their first index, each with the numbers of those.
+    /// The chunks that hold picked indices: the first index of each chunk, and which of the picked
+    /// indices lie in it.
     fn by_chunk(&self, chunk: usize) -> Vec<(usize, Range<usize>)> {
         let mut parts = Vec::new();
         let mut number = 0;
@@ -96,7 +97,7 @@ impl Picked {
     }
 }
 
-/// A dataset in chunks, as it is stored.
+/// A dataset stored in chunks.
 #[derive(Debug)]
 pub(super) struct Chunks {
     dataset: Dataset,
@@ -127,7 +128,7 @@ impl Chunks {
         }))
     }
 
-    /// How they are stored.
+    /// How the chunks are stored.
     pub(super) fn layout(&self) -> &ChunkLayout {
         &self.layout
     }
@@ -140,7 +141,7 @@ impl Chunks {
             // it.
             let found =
                 unsafe { H5Dget_chunk_storage_size(dataset, offset.as_ptr(), &raw mut size) };
-            // It fails where there is no chunk, too, and then says so.
+            // It also fails where there is no chunk; the error then says so.
             match found >= 0 {
                 true => Some(size),
                 false => is_not_allocated().then_some(0),
@@ -149,7 +150,7 @@ impl Chunks {
         if let Some(size) = found {
             return Ok(Some(size).filter(|&size| size > 0));
         }
-        // Looking through all chunks tells it for certain, and takes its time.
+        // Searching through all chunks gives a certain answer, but takes long.
         let (mut filters, mut address) = (0, 0);
         // SAFETY: as above, and the results are live.
         let looked = hdf5::sync::sync(|| unsafe {
@@ -167,24 +168,24 @@ impl Chunks {
         }
     }
 
-    /// The bytes of the chunk whose first value is at `offset`, as they stand in the file; none
-    /// where there is no chunk.
+    /// The bytes of the chunk whose first value is at `offset`, as stored in the file; none where
+    /// there is no chunk.
     ///
     /// # Errors
-    /// Where they cannot be read, are more than a chunk can have, or readers are told to skip
-    /// filters of this chunk.
+    /// Where they cannot be read, are more than a chunk can have, or the file tells readers to skip
+    /// a filter of this chunk.
     pub(super) fn stored(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
         let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
         let Some(size) = self.size(&offset)? else {
             return Ok(None);
         };
-        // Deflate makes nothing longer by more than a thousandth and some bytes.
+        // Deflate lengthens nothing by more than a thousandth and a few bytes.
         let most = self.layout.bytes() + self.layout.bytes() / 8 + 1024;
         let size = usize::try_from(size).ok().filter(|&size| size <= most);
         let mut bytes = vec![0; size.ok_or("a chunk has more bytes than it can have")?];
         let mut skipped = 0;
         let read = hdf5::sync::sync(|| {
-            // SAFETY: as above, and the buffer has the size that the library has just told.
+            // SAFETY: as above, and the buffer has the size that the library has just reported.
             unsafe {
                 H5Dread_chunk1(
                     self.dataset.id(),
@@ -204,7 +205,7 @@ impl Chunks {
         Ok(Some(bytes))
     }
 
-    /// The values of that chunk as bytes, also those beyond the dataset's edges.
+    /// The decoded values of that chunk as bytes, including those beyond the dataset's edges.
     fn values(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
         let Some(bytes) = self.stored(offset)? else {
             return Ok(None);
@@ -212,8 +213,7 @@ impl Chunks {
         Ok(Some(self.layout.decoded(bytes)?))
     }
 
-    /// The values of a hyperslab, row by row; those of chunks that are not there have the fill
-    /// value.
+    /// The values of a hyperslab, row by row; fill values where a chunk is missing.
     pub(super) fn read<T: Number>(&self, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
         let picked: Option<Vec<Picked>> = slab.iter().map(Picked::of).collect();
         let picked = picked.filter(|picked| {
@@ -268,7 +268,7 @@ fn is_not_allocated() -> bool {
     cause.is_some_and(|frame| frame.desc().contains("not allocated"))
 }
 
-/// As many values as are picked.
+/// As many fill values as values are picked.
 fn filled<T: Number>(picked: &[Picked], fill: T) -> hdf5::Result<Vec<T>> {
     let mut counts = picked.iter().map(|p| p.count);
     let count = counts
@@ -281,7 +281,7 @@ fn filled<T: Number>(picked: &[Picked], fill: T) -> hdf5::Result<Vec<T>> {
     Ok(out)
 }
 
-/// From a chunk to the values that are picked.
+/// Copies the picked values out of a chunk.
 struct Picker<'a> {
     picked: &'a [Picked],
     chunk: &'a [usize],
@@ -290,8 +290,8 @@ struct Picker<'a> {
 }
 
 impl Picker<'_> {
-    /// The values from `axis` on, where `from` counts the values of the chunk and `to` those
-    /// picked, before this axis.
+    /// Copies the values along the axes from `axis` on. `from` is the position in the chunk and
+    /// `to` the position among the picked values, both counted over the axes before it.
     fn along<T: Number>(
         &self,
         axis: usize,
@@ -321,7 +321,7 @@ impl Picker<'_> {
 /// The values of a hyperslab of a dataset, row by row.
 ///
 /// # Errors
-/// Where they are of another type than asked for, or are damaged.
+/// Where the values have another type than `T`, or are damaged.
 pub(super) fn read<T: Number>(dataset: &Dataset, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
     if !is_of::<T>(&dataset.dtype()) {
         return Err("its values are of another type".into());
@@ -330,13 +330,13 @@ pub(super) fn read<T: Number>(dataset: &Dataset, slab: &[SliceOrIndex]) -> hdf5:
     chunks.read(slab)
 }
 
-/// Deflate makes data smaller by this factor at most: 258 bytes in two bits.
+/// The largest factor by which deflate shrinks data: 258 bytes in two bits.
 const MOST_DEFLATED: u64 = 1032;
-/// Bytes of values that are read at once, those of the longest axis.
+/// The most bytes of values read at once: those of the longest axis.
 const MOST_AT_ONCE: u64 = 8 * MOST_POINTS;
 
-/// The number of values of a dataset that is no dataset of cells: what claims more than its bytes
-/// in the file can hold is refused before memory is asked for, or time spent on it.
+/// The number of values of a dataset other than of cells. A dataset that claims more values than
+/// its bytes in the file can hold is refused before memory or time is spent on it.
 fn count<T: Number>(dataset: &Dataset) -> hdf5::Result<usize> {
     if !is_of::<T>(&dataset.dtype()) {
         return Err("its values are of another type".into());
@@ -352,7 +352,7 @@ fn count<T: Number>(dataset: &Dataset) -> hdf5::Result<usize> {
 /// All values of a dataset.
 ///
 /// # Errors
-/// As for [`read`], and where they are more than are read at once.
+/// As for [`read`], and where there are more values than are read at once.
 pub(super) fn whole<T: Number>(dataset: &Dataset) -> hdf5::Result<Vec<T>> {
     let count = count::<T>(dataset)?;
     if (count * size_of::<T>()) as u64 > MOST_AT_ONCE {
@@ -376,7 +376,8 @@ pub(super) fn whole<T: Number>(dataset: &Dataset) -> hdf5::Result<Vec<T>> {
     Ok(values)
 }
 
-/// The values of a dataset, those of a list in chunks some at a time.
+/// Visits the values of a dataset; those of a one-dimensional dataset in chunks come chunk by
+/// chunk.
 ///
 /// # Errors
 /// As for [`whole`], and those of `visit`.
@@ -406,7 +407,7 @@ pub(super) fn for_each_part<T: Number>(
 mod tests {
     use super::*;
 
-    /// Every index that is picked is in its own chunk, once and in order.
+    /// Each picked index lies in its own chunk, once and in order.
     #[test]
     fn picked_indices_are_cut_by_chunks() {
         for start in 0..7 {

@@ -12,10 +12,10 @@ use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Plan};
 
-/// The attribute by which netCDF readers know cells that have no value.
+/// The attribute by which netCDF readers recognise cells without a value.
 pub(super) const FILL_VALUE: &str = "_FillValue";
 
-/// Writes the fill value of a dataset of integers. Reals always have one, NaN.
+/// Writes the fill value of a dataset of integers. Datasets of reals already have theirs, NaN.
 pub(super) fn put_fill(dataset: &Dataset, storage: Storage) -> hdf5::Result<()> {
     match storage {
         Storage::Count => put_numbers(dataset, FILL_VALUE, &[N_UNSTABLE_FILL]),
@@ -80,8 +80,8 @@ impl Variables<'_> {
         Ok(dataset)
     }
 
-    /// Integers up to `largest`; `fill` stands where there is no value. They have no `_FillValue`,
-    /// by which readers would turn them into floats, unless cells are missing.
+    /// A dataset of integers up to `largest`, with `fill` where there is no value. `_FillValue` is
+    /// written later, and only where cells are missing: with it, readers turn integers into floats.
     fn integers<T>(&mut self, name: &str, fill: T, largest: T) -> hdf5::Result<Dataset>
     where
         T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,

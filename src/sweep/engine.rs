@@ -1,4 +1,4 @@
-//! The sweep engine: the pieces of a sweep computed over threads, handed one by one to a sink.
+//! The sweep engine: computes the pieces of a sweep on several threads and gives them to a sink.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -18,17 +18,17 @@ use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
 use crate::model::ModelError;
 
-/// Pieces that wait for the sink, per thread.
+/// Pieces that may wait for the sink, per thread.
 const PIECES_WAITING: usize = 2;
-/// How often the sink may look at its clock where no piece comes.
+/// How often the sink's `pause` is called while no piece comes.
 const PAUSE: Duration = Duration::from_millis(200);
-/// How long pieces in hand may take to end once a stop is asked for; what takes longer is dropped.
+/// How long pieces in progress may take after a stop; later ones are dropped.
 const GRACE: Duration = Duration::from_millis(1200);
 
-/// Where pieces go. Encoding happens on the computing threads, writing on the one that called
+/// Where pieces go. Encoding happens on the computing threads, writing on the thread that called
 /// [`run`].
 pub trait Sink {
-    /// Turns pieces into what is written; one per thread.
+    /// Encodes pieces; each thread has its own.
     type Encoder: Encode;
     /// Why writing failed.
     type Error;
@@ -46,7 +46,7 @@ pub trait Sink {
         encoded: <Self::Encoder as Encode>::Encoded,
     ) -> Result<(), Self::Error>;
 
-    /// Called now and then, also where no piece comes.
+    /// Called at intervals while no piece comes.
     ///
     /// # Errors
     /// Ends the sweep.
@@ -54,16 +54,16 @@ pub trait Sink {
         Ok(())
     }
 
-    /// Makes durable what was taken. Called at the end, however that comes.
+    /// Makes all written pieces durable. Called at the end of the sweep, even after an error.
     ///
     /// # Errors
-    /// Is the error of the sweep, where it had no other.
+    /// Becomes the error of the sweep, unless it already has one.
     fn flush(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
 }
 
-/// What was computed of a piece.
+/// The contents of a computed piece.
 #[derive(Debug, Clone, Copy)]
 pub enum Computed<'a> {
     /// The curves of a plane.
@@ -74,7 +74,7 @@ pub enum Computed<'a> {
     Tile(&'a TileBuffers),
 }
 
-/// Turns a computed piece into what a sink writes.
+/// Encodes computed pieces for a sink.
 pub trait Encode: Send + 'static {
     /// A piece ready to be written.
     type Encoded: Send + 'static;
@@ -89,7 +89,7 @@ pub enum RunError<E> {
     /// It was asked to stop.
     #[error("interrupted")]
     Interrupted,
-    /// The sink could not take what it was given.
+    /// The sink could not write.
     #[error(transparent)]
     Sink(E),
     /// A parameter is outside the model's range.
@@ -108,13 +108,13 @@ pub enum RunError<E> {
     ThreadLost,
 }
 
-/// Computes the pieces of `plan` that `todo` lists on `threads` threads and hands them to `sink`.
-/// `stop` ends it: within 1.2 s, since what takes longer than that to end is dropped.
+/// Computes the pieces of `plan` that `todo` lists on `threads` threads and gives them to `sink`.
+/// After `stop` is set it ends within 1.2 s: pieces that take longer are dropped.
 ///
-/// What a piece holds depends on the plan alone.
+/// The contents of a piece depend on the plan alone.
 ///
 /// # Errors
-/// See [`RunError`]. Whatever the sink took before has been flushed then, if it could be.
+/// See [`RunError`]. The pieces that the sink has written are flushed even then, if possible.
 pub fn run<S: Sink>(
     plan: &Arc<Plan>,
     todo: Todo,
@@ -129,8 +129,8 @@ pub fn run<S: Sink>(
     conduct(plan, todo, on, sink, attended)
 }
 
-/// Computes the pieces of `plan` that `todo` lists on this thread and hands them to `sink`, until
-/// it is stopped, which is heeded between pieces and, where cells take long, between cells.
+/// Computes the pieces of `plan` that `todo` lists on this thread and gives them to `sink`. `stop`
+/// is checked between pieces and, where cells take long, between cells.
 ///
 /// # Errors
 /// See [`RunError`].
@@ -146,9 +146,9 @@ pub fn run_here<S: Sink>(
 /// Where pieces are computed.
 #[derive(Clone, Copy)]
 enum On {
-    /// On the thread that asks.
+    /// On the calling thread.
     This,
-    /// On so many others.
+    /// On this many other threads.
     Threads(usize),
 }
 
@@ -193,11 +193,11 @@ fn conduct<S: Sink>(
     Ok(())
 }
 
-/// Things that are done one after the other before another thread may take them.
+/// Items that a thread takes at a time.
 const TOGETHER: usize = 16;
 
-/// Does `work` on each of `items`, on `threads` threads, of which each has a memory that `begin`
-/// makes; gives what comes out in their order. No result may depend on the memory.
+/// Does `work` on each of `items`, on `threads` threads, and returns the results in order. Each
+/// thread has a memory made by `begin`; no result may depend on it.
 ///
 /// # Errors
 /// When the threads cannot be started.
@@ -220,13 +220,13 @@ pub fn each<I: Send, M, T: Send>(
     Ok(pool.install(|| items.map_init(begin, work).collect()))
 }
 
-/// A computed piece, or why it cannot be.
+/// A computed piece, or the error of the model.
 type Sent<E> = Result<(Piece, E), ModelError>;
-/// Where the pieces for a sink arrive.
+/// The channel on which pieces for a sink arrive.
 type Arrivals<S> = Receiver<Sent<<<S as Sink>::Encoder as Encode>::Encoded>>;
 
-/// Starts the threads. They hold what they need, so that nobody has to wait for one that is slow to
-/// stop.
+/// Starts the threads. They own what they need, so that nobody has to wait for a thread that stops
+/// slowly.
 fn start<S: Sink>(
     plan: &Arc<Plan>,
     todo: Todo,
@@ -236,7 +236,7 @@ fn start<S: Sink>(
 ) -> Result<Arrivals<S>, RunError<S::Error>> {
     let pool: ThreadPool = ThreadPoolBuilder::new()
         .num_threads(threads)
-        // A panic is told by the thread's missing work.
+        // A panic shows in the missing work of the thread.
         .panic_handler(|_| {})
         .build()
         .map_err(|error| RunError::Threads {
@@ -253,7 +253,7 @@ fn start<S: Sink>(
     Ok(receiver)
 }
 
-/// One thread's work, until nothing is left, a stop is asked for, or nobody listens any more.
+/// The work of one thread: until no piece is left, `stop` is set, or the receiver is gone.
 fn work<C: Encode>(
     plan: &Plan,
     todo: &Todo,
@@ -269,7 +269,7 @@ fn work<C: Encode>(
     }
 }
 
-/// Computes the next piece; none where nothing is left or a stop is asked for.
+/// Computes the next piece; none when no piece is left or `stop` is set.
 fn next<C: Encode>(
     plan: &Plan,
     todo: &Todo,
@@ -298,7 +298,7 @@ fn next<C: Encode>(
     Some(encoded.map(|encoded| (piece, encoded)))
 }
 
-/// Computes pieces on this thread, and says how many.
+/// Computes pieces on this thread; returns how many.
 fn here<S: Sink>(
     plan: &Plan,
     todo: &Todo,
@@ -329,8 +329,8 @@ fn take<S: Sink>(
     Ok(())
 }
 
-/// Hands pieces to the sink as they come, and says how many. After a stop only those that come in
-/// time.
+/// Gives pieces to the sink as they arrive; returns how many. After a stop, only those that arrive
+/// in time.
 fn receive<S: Sink>(
     plan: &Plan,
     receiver: &Arrivals<S>,

@@ -1,4 +1,4 @@
-//! What a running sweep tells whoever watches it.
+//! The events of a running sweep, for observers.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,8 +7,7 @@ use std::sync::atomic::AtomicBool;
 /// A step of a running sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// A file beside finished tiles, or of them, is not as it was written. What of it is lost is
-    /// made again.
+    /// A tile file, or a file beside the tiles, is damaged. What is lost is computed again.
     Damaged {
         /// The file.
         file: PathBuf,
@@ -26,30 +25,30 @@ pub enum Event {
     },
     /// A piece is computed and handed over.
     PieceDone {
-        /// Its cells; 0 where it is a plane of curves or best settings.
+        /// Its cells; 0 for a plane of curves or of best settings.
         cells: u64,
     },
-    /// Everything that this run had to compute is computed.
+    /// Everything that this run had to do is computed.
     Finished,
 }
 
 /// Receives the events of a sweep, on the thread that started it.
 pub trait Observer {
-    /// Takes note of an event.
+    /// Handles an event.
     fn event(&self, event: &Event);
 }
 
-/// Who follows a run, and what stops it.
+/// Who observes a run, and what stops it.
 #[derive(Clone, Copy)]
 pub struct Attended<'a> {
-    /// Takes note of what happens.
+    /// Receives the events.
     pub observer: &'a dyn Observer,
-    /// Once it is set, the run ends as soon as it can.
+    /// Once it is set, the run ends as soon as possible.
     pub stop: &'a Arc<AtomicBool>,
 }
 
 impl<'a> Attended<'a> {
-    /// A run that nobody takes note of.
+    /// A run without an observer.
     #[must_use]
     pub fn silently(stop: &'a Arc<AtomicBool>) -> Self {
         Self {
@@ -59,7 +58,7 @@ impl<'a> Attended<'a> {
     }
 }
 
-/// An observer that takes no note.
+/// An observer that ignores all events.
 pub struct Silent;
 
 impl Observer for Silent {

@@ -1,4 +1,4 @@
-//! A sweep computed into memory: for programs that want numbers and no file.
+//! A sweep computed into memory, for programs that want numbers and no file.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -36,7 +36,7 @@ use super::plan::tile::{for_each_index, memory_strides, place_of};
 #[derive(Debug, Clone)]
 pub struct Grid {
     plan: Arc<Plan>,
-    /// Places between neighbours along each axis.
+    /// Distance in memory between neighbouring cells along each axis.
     strides: Vec<usize>,
     /// The cells of the whole map in the order of its axes, the last one fastest.
     pub cells: TileBuffers,
@@ -57,11 +57,10 @@ pub struct TooLarge {
 }
 
 impl Grid {
-    /// Computes all of `plan` on `threads` threads, one at least. It takes the memory of all cells
-    /// at once.
+    /// Computes all of `plan` on `threads` threads, at least one. All cells are in memory at once.
     ///
     /// # Errors
-    /// When that is more than the system promises, a parameter is outside the model's range, or the
+    /// When the system cannot provide the memory, a parameter is outside the model's range, or the
     /// threads cannot be started.
     pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<TooLarge>> {
         let mut grid = Self::empty(plan)?;
@@ -76,11 +75,10 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Computes all of `plan` on this thread, until `stop` is set, which is heeded between its
-    /// pieces.
+    /// Computes all of `plan` on this thread. `stop` is checked between pieces.
     ///
     /// # Errors
-    /// As [`Grid::compute`], and when it was stopped.
+    /// As [`Grid::compute`], and when it is stopped.
     pub fn compute_here(
         plan: &Arc<Plan>,
         stop: &Arc<AtomicBool>,
@@ -113,7 +111,7 @@ impl Grid {
         let tile = self.plan.tiles.tile(number);
         let strides = self.plan.tiles.strides();
         let first = place_of(&tile.offset, &self.strides);
-        // The last axis is the fastest one on both sides.
+        // The last axis is the fastest in both layouts.
         let last = tile.extent.len() - 1;
         for_each_index(&tile.extent, Some(last), |inside| {
             let (at, there) = (
@@ -127,7 +125,7 @@ impl Grid {
     }
 }
 
-/// The number of cells of a sweep, if the system promises memory for them.
+/// The number of cells of a sweep, if the system can provide memory for them.
 fn room_for(plan: &Plan) -> Result<usize, TooLarge> {
     let fields = plan.spec.fields.iter().map(|field| field.bytes());
     let status = size_of::<u8>();
@@ -141,10 +139,10 @@ fn room_for(plan: &Plan) -> Result<usize, TooLarge> {
     })
 }
 
-/// Pieces as they are computed, to be handed to another thread.
+/// Copies pieces, so that they can be sent to another thread.
 struct Copies;
 
-/// A piece that belongs to itself.
+/// A piece that owns its contents.
 enum Owned {
     Curves(BoundaryPlane),
     Best(Option<BestSettings>),
@@ -163,7 +161,7 @@ impl Encode for Copies {
     }
 }
 
-/// Takes the pieces as they come.
+/// Receives the pieces.
 struct Taken<'g>(&'g mut Grid);
 
 impl Sink for Taken<'_> {
@@ -181,7 +179,7 @@ impl Sink for Taken<'_> {
             }
             (Piece::Best(number), Owned::Best(best)) => self.0.best[number as usize] = best,
             (Piece::Tile(number), Owned::Tile(tile)) => self.0.put_tile(number as usize, &tile),
-            // Each kind of piece is computed as such.
+            // The contents always match the kind of piece.
             _ => {}
         }
         Ok(())

@@ -5,16 +5,16 @@
 //!           → [cells] one thread's work on a tile → [engine] pieces over threads → a sink
 //! ```
 //!
-//! Each room uses only those before it. A case file is one motion of the block:
-//! [`input::case_file`] reads it, [`cells::trace`] follows and samples it.
+//! Each room uses only those before it. A case file describes one motion of the block:
+//! [`input::case_file`] reads it, [`cells::trace`] follows and samples the motion.
 //!
-//! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a
-//! line at once. A **tile** is a block of lines: the unit of parallel work and of storing. Nothing
-//! passes from tile to tile, so a map does not depend on the number of threads.
+//! A **line** is the set of all delays at fixed other parameters: the closed form gives all
+//! crossings of a line at once. A **tile** is a block of lines: the unit of parallel work and of
+//! storage. Tiles do not exchange data, so a map does not depend on the number of threads.
 //!
 //! - `cells`: one thread's work: the third room
 //! - `engine`: pieces over threads into a sink; the only file that imports rayon
-//! - `events`: what a running sweep tells; the engine emits, the terminal listens
+//! - `events`: the events of a running sweep, for observers
 //! - `grid`: a sweep computed into memory, for programs that want no file
 //! - `input`: what the user wrote: the first of the rooms of a sweep
 //! - `plan`: cells, tiles, planes of curves, the plan's hash

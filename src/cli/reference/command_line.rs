@@ -1,4 +1,4 @@
-//! The command line, from what `--help` is made of.
+//! The command line, from the data of `--help`.
 
 use std::fmt::Write;
 
@@ -84,7 +84,7 @@ fn spelled(arg: &Arg) -> String {
         .to_owned()
 }
 
-/// What the help says of an argument, with its default and the values that it takes.
+/// The help of an argument, with its default and its possible values.
 fn about(arg: &Arg) -> String {
     let help = arg.get_long_help().or(arg.get_help());
     let mut text = help.map_or_else(String::new, ToString::to_string);

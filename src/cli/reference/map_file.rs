@@ -1,4 +1,4 @@
-//! What stands in map and trace files.
+//! The contents of map and trace files.
 
 use slipmap::linear::best::Kind;
 use slipmap::store::curve_rows::CurveRows;
@@ -8,7 +8,7 @@ use slipmap::sweep::cells::trace::{EVENTS, MODES};
 
 use super::markdown::{code, heading, paragraph, table};
 
-/// Root attributes of maps, each with what it is.
+/// Root attributes of maps, with their meanings.
 const ROOT: [(&str, &str); 20] = [
     ("Conventions", "the conventions that the file follows"),
     (root::TITLE, "the title of the sweep"),
@@ -56,7 +56,7 @@ const ROOT: [(&str, &str); 20] = [
     ("_NCProperties", "what netCDF readers look for"),
 ];
 
-/// Attributes of datasets of cells, each with what it is.
+/// Attributes of datasets of cells, with their meanings.
 const OF_CELLS: [(&str, &str); 9] = [
     ("coordinates", "the parameters that do not vary"),
     (

@@ -12,7 +12,7 @@ pub(super) fn paragraph(page: &mut String, text: &str) {
     let _ = write!(page, "{text}\n\n");
 }
 
-/// A table with a row for each of `rows`; none where there are no rows.
+/// A table with a row for each of `rows`; nothing without rows.
 pub(super) fn table<const N: usize>(page: &mut String, titles: [&str; N], rows: Vec<[String; N]>) {
     let line = |cells: [String; N]| {
         let cells = cells.map(|cell| cell.replace('|', "\\|").replace('\n', " "));

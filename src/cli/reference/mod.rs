@@ -1,8 +1,8 @@
-//! `slipmap reference`: the pages of the guide that list what the program knows, made of the tables
-//! that it uses itself. Hidden: `tests/guide.rs` holds the pages to it.
+//! `slipmap reference`: the reference pages of the guide, generated from the tables that the
+//! program itself uses. The command is hidden; `tests/guide.rs` compares the pages with its output.
 //!
-//! - `command_line`: the command line, from what `--help` is made of
-//! - `map_file`: what stands in map and trace files
+//! - `command_line`: the command line, from the data of `--help`
+//! - `map_file`: the contents of map and trace files
 //! - `markdown`: pieces of a page in Markdown
 
 mod command_line;
@@ -43,7 +43,7 @@ enum Page {
     CommandLine,
 }
 
-/// Stands above each page.
+/// The first lines of each page.
 const NOTE: &str = "<!-- Printed by `slipmap reference`, from the tables of the program: \
                     SLIPMAP_WRITE=1 cargo test --test guide writes it anew. -->\n";
 
@@ -61,7 +61,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     say::text(&page)
 }
 
-/// Powers of force, length and time as a unit in these words.
+/// Powers of force, length and time as a unit in these three words.
 fn dimension(powers: [i32; 3]) -> String {
     let words = ["force", "length", "time"].into_iter().zip(powers);
     let words = words
@@ -188,7 +188,7 @@ fn fields(page: &mut String) {
     table(page, ["bit", "name", "meaning"], rows.collect());
 }
 
-/// Units by the names of what they measure.
+/// Units with the names of the quantities that they measure.
 fn symbolic() -> slipmap::sweep::input::units::Units {
     let force_length_time = Some(["force", "length", "time"].map(String::from));
     slipmap::sweep::input::units::Units { force_length_time }

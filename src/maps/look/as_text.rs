@@ -11,7 +11,7 @@ use crate::sweep::input::setting_text::{number, of_point, setting_text, table};
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::{Plan, SweepSpec};
 
-/// What can be asked at a cell, as text; none where it means nothing there.
+/// The requests about a cell, as text; none for those that do not apply to it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CellTexts {
     /// A point of continuous sliding.
@@ -20,13 +20,13 @@ pub struct CellTexts {
     pub vc: Option<String>,
     /// A case file: the motion from the cell's start.
     pub motion: Option<String>,
-    /// The command line of the point or, where there is none, of the critical velocity; none for a
-    /// law that flags cannot say.
+    /// The command line for the point or, if there is none, for the critical velocity; none for a
+    /// law that flags cannot express.
     pub command: Option<String>,
 }
 
 impl CellTexts {
-    /// Of the cell at `index`.
+    /// The texts of the cell at `index`.
     #[must_use]
     pub fn of(plan: &Plan, index: &[usize]) -> Self {
         let spec = &plan.spec;
@@ -73,7 +73,7 @@ impl CellTexts {
     }
 }
 
-/// The keys that say by which protocol a critical velocity is looked for.
+/// The keys of the protocol for a critical velocity.
 fn asked_for(protocol: Protocol) -> String {
     let name = protocol.name();
     match protocol {
@@ -118,7 +118,7 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
     if Parameter::ALL.into_iter().any(begins) {
         said += &table("start", setting, begins);
     } else if spec.follows_motions() && spec.simulation.disturbance == 0.0 {
-        // Motions of such a map, an older one, start on their equilibrium.
+        // Motions of such a map, which is an older one, start in equilibrium.
         let v0 = number(setting.get(Parameter::V0));
         said += &format!("\n[start]\n{} = {v0}\n", Parameter::XDot0.name());
     }
@@ -131,7 +131,7 @@ mod tests {
     use crate::sweep::CaseSpec;
     use crate::sweep::input::point_file::{PointOf, PointSpec};
 
-    /// Settings are equal, also where both have no value.
+    /// Checks that settings are equal; two missing values count as equal.
     #[track_caller]
     fn assert_same(found: &Setting, expected: &Setting, but: &[Parameter]) {
         assert_eq!(found.law(), expected.law());
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// What is read of the texts is the setting.
+    /// Checks that reading the texts gives the setting.
     #[track_caller]
     fn assert_read(texts: &CellTexts, plan: &Plan, setting: &Setting) {
         if let Some(text) = &texts.point {
@@ -208,7 +208,7 @@ mod tests {
         }
         if let Some(text) = &texts.motion {
             let read: CaseSpec = text.parse().unwrap();
-            // Where nothing says where it starts the case disturbs sliding.
+            // Without a given start, the case disturbs sliding.
             let but = if read.start_assumed { &START[..] } else { &[] };
             assert_same(&read.setting, setting, but);
             let motion = plan.spec.simulation.case(&read.setting, 0.0).unwrap();

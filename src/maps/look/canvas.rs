@@ -1,34 +1,34 @@
-//! What the pixels of a window show of the cells that were read so far.
+//! The pixels of a window, filled from the cells read so far.
 
 use std::ops::Range;
 
 use super::cells::{Cell, Reader, Slab};
 use super::pixels::Pixels;
 
-/// The pixel hides cells of several values or, where nothing is amiss with the one that it shows,
-/// some with which something is.
+/// The pixel hides cells with different values, or flagged cells although the cell that it shows
+/// has no flag.
 pub const SEVERAL: u8 = 1;
-/// The cell that it shows was not read yet.
+/// The cell of the pixel is not read yet.
 pub const UNREAD: u8 = 2;
-/// The cell that it shows is not computed yet.
+/// The cell of the pixel is not computed yet.
 pub const NOT_COMPUTED: u8 = 4;
-/// It lies beyond the axes, and shows no cell.
+/// The pixel lies beyond the axes and shows no cell.
 pub const BEYOND: u8 = 8;
-/// The pixel has the value of a hidden cell for now: the cell that it is to show is not read yet.
+/// The pixel has the value of a hidden cell for now, because its own cell is not read yet.
 const HIDDEN_SEEN: u8 = 128;
 
-/// Pixels of cells, the slower axis of the map row by row.
+/// Pixels, row by row along the slower axis of the map.
 #[derive(Debug)]
 pub(super) struct Canvas<T> {
     pub values: Vec<T>,
     pub bits: Vec<u8>,
 }
 
-/// The pixels along both axes, and where a slab lies under them.
+/// The pixels along both axes, and the position of a slab under them.
 pub(super) struct Under<'a> {
     pub slow: &'a Pixels,
     pub fast: &'a Pixels,
-    /// The cells of the slab along both axes.
+    /// The range of the slab's cells along both axes.
     pub cells: (Range<u32>, Range<u32>),
 }
 
@@ -40,7 +40,7 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// Pixels that have seen this already: what differs from it is marked.
+    /// Pixels that hold `value` for now: cells with another value mark them.
     pub(super) fn that_saw(value: T, pixels: usize) -> Self {
         Self {
             values: vec![value; pixels],
@@ -48,8 +48,8 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// Shows the cells of a slab that are nearest to pixels and, where `several` is asked for,
-    /// marks pixels that hide cells of several values.
+    /// Shows the cells of a slab that are nearest to pixels. With `several`, it also marks pixels
+    /// that hide cells with different values.
     pub(super) fn paint(&mut self, slab: &Slab<T>, under: &Under, several: bool) {
         self.show(slab, under);
         if several {
@@ -78,7 +78,7 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// A pixel hides cells of this value.
+    /// Records that a pixel hides a cell with this value.
     fn see(&mut self, place: usize, value: T) {
         let bits = &mut self.bits[place];
         if *bits & (UNREAD | HIDDEN_SEEN) == UNREAD {
@@ -89,7 +89,7 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// Marks pixels that hide cells of several values.
+    /// Marks pixels that hide cells with different values.
     pub(super) fn compare(&mut self, slab: &Slab<T>, under: &Under) {
         let (rows, _) = &under.cells;
         let mut readers = [slab.cells.reader(), slab.cells.reader()];
@@ -98,7 +98,7 @@ impl<T: Cell> Canvas<T> {
             let inside = &under.slow.inside[down];
             let mut inside = inside.start.max(rows.start)..inside.end.min(rows.end);
             if constant && !inside.is_empty() {
-                // One row says it for all.
+                // All rows are equal, so one is enough.
                 inside.end = inside.start + 1;
             }
             for row in inside.clone() {
@@ -111,8 +111,8 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// Marks the pixels of a row of pixels in which cells of one row differ, or are not what the
-    /// pixel has seen.
+    /// In one row of pixels, marks those in which cells of one row differ from one another or from
+    /// the pixel's value.
     fn compare_within(&mut self, from: usize, down: usize, under: &Under, reader: &mut Reader<T>) {
         let cells = &under.cells.1;
         let alone = under.slow.inside[down].len() == 1;
@@ -181,7 +181,7 @@ mod tests {
     use super::super::pixels::{Scale, Stretch};
     use super::*;
 
-    /// Numbers by chance, the same every time.
+    /// Pseudo-random numbers, the same in every run.
     struct Chance(u64);
 
     impl Chance {
@@ -196,7 +196,7 @@ mod tests {
             self.of(1 << 40) as f64 / (1_u64 << 40) as f64
         }
 
-        /// An uneven axis, and pixels on a stretch of it that may reach beyond.
+        /// An uneven axis, and pixels on a stretch of it that may extend beyond it.
         fn axis(&mut self, most: usize) -> (usize, Pixels) {
             let mut value = 0.0;
             let count = 1 + self.of(most);
@@ -216,7 +216,7 @@ mod tests {
             (count, Pixels::along(&values, &stretch).unwrap())
         }
 
-        /// These cells, stored in one way or the other.
+        /// These cells, stored in a random form.
         fn stored(&mut self, cells: Vec<u16>) -> Cells<u16> {
             if self.of(2) == 0 {
                 return Cells::Each(cells);
@@ -241,7 +241,7 @@ mod tests {
             self.cells[row as usize * self.width + column as usize]
         }
 
-        /// The part of it in a chunk, with something between its rows.
+        /// The part of the field in a chunk, with a gap between its rows.
         fn slab(
             &self,
             (rows, columns): &(Range<u32>, Range<u32>),
@@ -277,7 +277,7 @@ mod tests {
         all
     }
 
-    /// What a pixel of all cells shows, and whether it hides several values.
+    /// Checks a pixel against all its cells: what it shows, and whether it hides different values.
     #[track_caller]
     fn check(canvas: &Canvas<u16>, field: &Field, slow: &Pixels, fast: &Pixels) -> usize {
         let mut several = 0;

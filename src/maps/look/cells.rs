@@ -1,16 +1,16 @@
-//! Cells in memory: as runs of equal ones where that is short, else one by one.
+//! Cells in memory: as runs of equal cells where that is shorter, else one by one.
 
 use std::sync::Arc;
 
-/// Cells of a column, as bits: two are equal if their bits are.
+/// A cell of a column, compared by its bits.
 pub(super) trait Cell: Copy + Eq + Default + Send + Sync + 'static {
     /// Bytes of a cell.
     const SIZE: usize;
     /// A cell from its bytes, [`Self::SIZE`] of them.
     fn of(bytes: &[u8]) -> Self;
-    /// Forgets the type.
+    /// The cells in the common type.
     fn wrapped(cells: Arc<Cells<Self>>) -> AnyCells;
-    /// The cells in their own type; none where they are of another one.
+    /// The cells in this type; none where they have another one.
     fn unwrapped(cells: &AnyCells) -> Option<&Arc<Cells<Self>>>;
 }
 
@@ -59,14 +59,14 @@ cell!(u64, U64);
 /// Cells in a row.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Cells<T> {
-    /// Where each run of equal cells ends, and what they are.
+    /// The end of each run of equal cells, and its value.
     Runs { ends: Vec<u32>, values: Vec<T> },
     /// One by one.
     Each(Vec<T>),
 }
 
 impl<T: Cell> Cells<T> {
-    /// As runs where these take at most one `share`th of the memory.
+    /// Stores cells as runs if these take at most one `share`th of the memory, else one by one.
     pub(super) fn of(cells: Vec<T>, share: usize) -> Self {
         let most = cells.len() * T::SIZE / (share * (T::SIZE + 4));
         let (mut ends, mut values) = (Vec::new(), Vec::new());
@@ -84,7 +84,7 @@ impl<T: Cell> Cells<T> {
         Self::Runs { ends, values }
     }
 
-    /// So many equal ones.
+    /// `count` equal cells.
     pub(super) fn constant(value: T, count: usize) -> Self {
         Self::Runs {
             ends: vec![count as u32],
@@ -92,13 +92,13 @@ impl<T: Cell> Cells<T> {
         }
     }
 
-    /// Whether some cell is so.
+    /// Whether some cell satisfies `is_so`.
     pub(super) fn any(&self, is_so: impl Fn(T) -> bool) -> bool {
         let (Self::Runs { values: all, .. } | Self::Each(all)) = self;
         all.iter().any(|&cell| is_so(cell))
     }
 
-    /// What `of` makes of each.
+    /// The cells with `of` applied to each.
     pub(super) fn map(&self, of: impl Fn(T) -> T) -> Self {
         let (ends, values) = match self {
             Self::Each(cells) => return Self::Each(cells.iter().map(|&cell| of(cell)).collect()),
@@ -120,17 +120,17 @@ impl<T: Cell> Cells<T> {
         }
     }
 
-    /// Whether they are known to be equal.
+    /// Whether all cells are known to be equal.
     pub(super) fn is_constant(&self) -> bool {
         matches!(self, Self::Runs { values, .. } if values.len() == 1)
     }
 
-    /// Whether they are stored as runs.
+    /// Whether the cells are stored as runs.
     pub(super) fn is_runs(&self) -> bool {
         matches!(self, Self::Runs { .. })
     }
 
-    /// A copy of cells that are stored as runs; none of others, which take more room.
+    /// A copy of cells stored as runs; none for others, which take more memory.
     pub(super) fn copied_runs(&self) -> Option<Self> {
         match self {
             Self::Runs { ends, values } => Some(Self::Runs {
@@ -148,7 +148,7 @@ impl<T: Cell> Cells<T> {
         }
     }
 
-    /// Reads cells from place to place.
+    /// A reader of the cells.
     pub(super) fn reader(&self) -> Reader<'_, T> {
         Reader {
             cells: self,
@@ -157,7 +157,7 @@ impl<T: Cell> Cells<T> {
     }
 }
 
-/// Reads cells, best in rising order.
+/// Reads cells, fastest in increasing order.
 pub(super) struct Reader<'a, T> {
     cells: &'a Cells<T>,
     run: usize,
@@ -169,8 +169,7 @@ impl<'a, T: Cell> Reader<'a, T> {
         self.until(place).0
     }
 
-    /// The cell at a place, and where the run ends that it is in; of cells one by one, the next
-    /// place.
+    /// The cell at a place, and the end of its run; for cells stored one by one, the next place.
     pub(super) fn until(&mut self, place: usize) -> (T, usize) {
         match self.cells {
             Cells::Each(cells) => (cells[place], place + 1),
@@ -191,7 +190,7 @@ impl<'a, T: Cell> Reader<'a, T> {
         }
     }
 
-    /// The value that all cells of a range have; none where they differ. The range is not empty.
+    /// The common value of all cells of a range, which is not empty; none where they differ.
     pub(super) fn only(&mut self, from: usize, to: usize) -> Option<T> {
         match self.cells {
             Cells::Each(cells) => {
@@ -205,7 +204,7 @@ impl<'a, T: Cell> Reader<'a, T> {
         }
     }
 
-    /// The cells themselves, where they are stored one by one.
+    /// The cells themselves, if they are stored one by one.
     pub(super) fn each(&self) -> Option<&'a [T]> {
         match self.cells {
             Cells::Each(cells) => Some(cells),
@@ -220,18 +219,18 @@ pub(super) struct Slab<T> {
     pub cells: Arc<Cells<T>>,
     /// The place of the first cell.
     pub base: usize,
-    /// Places from row to row.
+    /// Distance between neighbouring rows.
     pub row: usize,
 }
 
-/// Where a rectangle lies in a chunk.
+/// The position of a rectangle in a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut {
     /// The place of its first cell.
     pub base: usize,
-    /// Places from row to row, and from cell to cell.
+    /// Distances between neighbouring rows, and between neighbouring cells.
     pub strides: (usize, usize),
-    /// Rows, and cells of a row.
+    /// Number of rows, and of cells in a row.
     pub extent: (usize, usize),
 }
 

@@ -1,4 +1,4 @@
-//! Which chunks of a window are still to be looked at, and in which order.
+//! The chunks of a window that are still to be read, and their order.
 
 use std::collections::VecDeque;
 
@@ -8,30 +8,31 @@ use crate::store::chunk_layout::ChunkLayout;
 use crate::sweep::plan::MOST_TILES;
 use crate::sweep::plan::pieces::mixed;
 
-/// A chunk that is to be looked at.
+/// A chunk to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Job {
     /// True for a chunk of the status, false for one of the field.
     pub status: bool,
-    /// Numbers of the chunk along the slower and the faster axis.
+    /// Number of the chunk along the slower and the faster axis.
     pub chunk: (usize, usize),
 }
 
-/// Chunks in turn, four bytes each: there may be millions.
+/// Chunks in order, with four bytes each: there may be millions.
 #[derive(Debug, Default)]
 pub(super) struct Jobs {
-    /// Numbers of chunks in the plane, row by row, twice; 1 more for those of the status.
+    /// Twice the number of the chunk in the plane, counted row by row; plus 1 for chunks of the
+    /// status.
     packed: VecDeque<u32>,
-    /// Chunks of a row, of the field and of the status.
+    /// Number of chunks in a row, for the field and for the status.
     row: [u32; 2],
 }
 
-// A plane has as many chunks as a map at most, and there are maps of so many only.
+// A plane has no more chunks than a map has tiles.
 const _: () = assert!(MOST_TILES < 1 << 31);
 
 impl Jobs {
-    /// First those that pixels show, spread all over the window, field and status in turn, then
-    /// those whose cells are all hidden.
+    /// Chunks with cells that pixels show come first, spread over the window, field and status in
+    /// turn. Then come those whose cells are all hidden.
     pub(super) fn of(
         plane: &Plane,
         (slow, fast): (&Pixels, &Pixels),
@@ -41,7 +42,7 @@ impl Jobs {
         let along = |layout: &ChunkLayout, axis: usize| {
             layout.shape[axis].div_ceil(layout.chunk[axis]) as u32
         };
-        // Shown ones, then hidden ones.
+        // Chunks with shown cells, then the others.
         let of = |layout: &ChunkLayout| {
             let row = along(layout, plane.fast);
             let down = match plane.slow {
@@ -85,7 +86,7 @@ impl Jobs {
         Self { packed, row }
     }
 
-    /// How many there are.
+    /// Number of jobs.
     pub(super) fn len(&self) -> usize {
         self.packed.len()
     }
@@ -99,13 +100,13 @@ impl Jobs {
         }
     }
 
-    /// Takes out the next one.
+    /// Removes and returns the next job.
     pub(super) fn next(&mut self) -> Option<Job> {
         let packed = self.packed.pop_front()?;
         Some(Self::job(self.row, packed))
     }
 
-    /// Keeps those that are to be kept.
+    /// Keeps the jobs for which `kept` is true.
     pub(super) fn retain(&mut self, mut kept: impl FnMut(Job) -> bool) {
         let row = self.row;
         self.packed.retain(|&packed| kept(Self::job(row, packed)));

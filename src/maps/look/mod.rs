@@ -1,24 +1,24 @@
-//! A map that is looked at: windows on it are read little by little, on threads of their own, and
-//! what was read is kept as long as there is room.
+//! Interactive display of a map. Windows are read bit by bit, on threads of their own, and cells
+//! that were read are kept while there is room.
 //!
 //! ```text
 //! window asked → [pixels] the cells under each → [view] chunks in turn → [source] stored bytes
 //!   → [cells] runs, or one by one → [shelf] kept → [canvas] nearest cell, several values → shot
 //! ```
 //!
-//! Nothing is averaged: a pixel shows one cell, and says so where it hides others of another value.
+//! Nothing is averaged: a pixel shows one cell, and is marked if it hides cells with other values.
 //!
 //! - `as_text`: a cell's setting as a point, a problem of v_c, a case file and a command line
-//! - `canvas`: its pixels: the nearest cell, and whether others differ
-//! - `cells`: cells in memory, as runs of equal ones where that is short
-//! - `jobs`: chunks that are still to be read, in few bytes each
+//! - `canvas`: pixels: the nearest cell, and whether others differ
+//! - `cells`: cells in memory, as runs of equal cells where that is shorter
+//! - `jobs`: the chunks that are still to be read, in a few bytes each
 //! - `pixels`: which cells the pixels along an axis show and hide
 //! - `reading`: from stored chunks to pixels
-//! - `shelf`: cells that were read, as long as there is room
+//! - `shelf`: cells that were read, kept while there is room
 //! - `short`: chunks of equal bytes, inflated once
 //! - `source`: where cells come from: the map's file, or the tiles of its run
 //! - `view`: a window that is being read, chunk by chunk
-//! - `window`: what is asked of a window, and what is told
+//! - `window`: the request for a window, and the answer
 
 pub mod as_text;
 mod canvas;
@@ -53,14 +53,14 @@ use view::locked;
 use crate::store::StoreError;
 use crate::store::curve_reader::MapCurve;
 
-/// Windows that are read at a time, the last ones asked for.
+/// The most windows that are read at a time: those requested last.
 const MOST_VIEWS: usize = 2;
-/// Bytes of their pixels; where they are more, the last one is read alone.
+/// The most bytes of their pixels; beyond that, only the last window is read.
 const MOST_OF_VIEWS: usize = 24 << 20;
-/// Threads that read.
+/// The most threads that read.
 const MOST_THREADS: usize = 4;
 
-/// A map that is looked at.
+/// A map that is displayed.
 #[derive(Debug)]
 pub struct Look {
     facts: Arc<Facts>,
@@ -69,17 +69,17 @@ pub struct Look {
     numbers: AtomicU64,
 }
 
-/// What is being read, the newest first.
+/// The windows being read, the newest first.
 #[derive(Debug, Default)]
 struct Desk {
     views: Mutex<VecDeque<Arc<View>>>,
-    /// There is something to read.
+    /// Signals that there is something to read.
     work: Condvar,
-    /// Something was read.
+    /// Signals that something was read.
     news: Condvar,
 }
 
-/// Whether a map is still the one that was opened.
+/// The map is no longer the one that was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OtherMap;
 
@@ -110,14 +110,14 @@ impl Look {
         })
     }
 
-    /// What stays as it is.
+    /// The facts about the map that do not change.
     #[must_use]
     pub fn facts(&self) -> &Facts {
         &self.facts
     }
 
-    /// Takes in what was computed since. An error where another map, or none, is there by now: it
-    /// has to be opened again.
+    /// Takes in what was computed since the last call. It is an error if the map is gone or another
+    /// one has taken its place: it must then be opened again.
     ///
     /// # Errors
     /// See above.
@@ -138,7 +138,7 @@ impl Look {
         }
     }
 
-    /// Changes when more cells are there; and how many there are.
+    /// A number that changes when cells are added, and the number of computed cells.
     #[must_use]
     pub fn version(&self) -> (u64, u64) {
         let source = locked(&self.reading.source);
@@ -157,10 +157,10 @@ impl Look {
         }
     }
 
-    /// A window, once it was read or `patience` is over.
+    /// A window, once it is read completely or `patience` is over.
     ///
     /// # Errors
-    /// When there is no such window, in words.
+    /// A description of the fault when there is no such window.
     pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Arc<View>, String> {
         let until = Instant::now() + patience;
         let view = self.view(asked)?;
@@ -177,7 +177,7 @@ impl Look {
         Ok(view)
     }
 
-    /// The view of a window: the one that is being read already, or a new one.
+    /// The view of a window: the one that is already being read, or a new one.
     fn view(&self, asked: &Asked) -> Result<Arc<View>, String> {
         let version = self.reading.version.load(Ordering::Relaxed);
         let mut views = self.desk.views();
@@ -203,7 +203,7 @@ impl Look {
     /// The bits of a cell of a column; the fill value where it is not computed.
     ///
     /// # Errors
-    /// When it cannot be read, in words.
+    /// A description of the fault when it cannot be read.
     pub fn cell(&self, column: usize, index: &[usize]) -> Result<u64, String> {
         self.reading.cell(column, index)
     }
@@ -228,7 +228,7 @@ impl Look {
         }
     }
 
-    /// The axes of the planes of curves, parameter and delay; none where there are no curves.
+    /// The axes of the planes of curves, parameter and delay; none without curves.
     #[must_use]
     pub fn curves_plane(&self) -> Option<(usize, usize)> {
         self.told(crate::store::MapFile::boundary_plane, |growing| {
@@ -242,7 +242,7 @@ impl Desk {
         locked(&self.views)
     }
 
-    /// The next chunk of the newest window that has any left; waits for one.
+    /// The next chunk of the newest window with chunks left; waits for one.
     fn next(&self) -> (Arc<View>, Job) {
         let mut views = self.views();
         loop {
@@ -259,14 +259,15 @@ impl Desk {
         }
     }
 
-    /// Reads the next chunk. A window is complete also where reading one fails.
+    /// Reads the next chunk. A chunk that cannot be read still counts towards a complete window.
     fn work(&self, read: impl FnOnce(&View, Job) -> Result<(), String>) {
         let (view, job) = self.next();
         let done = catch_unwind(AssertUnwindSafe(|| read(&view, job)));
         let failed = "a chunk could not be read; this is a fault of slipmap";
         view.finish_one(done.unwrap_or_else(|_| Err(failed.into())));
         if view.is_complete() {
-            // With the lock, so that nobody misses it between looking and waiting.
+            // Take the lock first, so that a thread between checking and waiting does not miss the
+            // signal.
             drop(self.views());
             self.news.notify_all();
         }

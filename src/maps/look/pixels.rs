@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::model::elementary::ln;
 
-/// How pixels are spread over an axis.
+/// The spacing of pixels over an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
     /// Evenly.
@@ -14,7 +14,7 @@ pub enum Scale {
     Log,
 }
 
-/// A stretch of an axis under pixels.
+/// A stretch of an axis that is divided into pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     /// The value at the outer edge of the first pixel; none: the axis' first value.
@@ -23,30 +23,30 @@ pub struct Stretch {
     pub to: Option<f64>,
     /// The number of pixels.
     pub pixels: usize,
-    /// How they are spread.
+    /// Their spacing.
     pub scale: Scale,
 }
 
 /// Pixels along an axis, in the order of the cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pixels {
-    /// The cell nearest to the centre of each, not falling.
+    /// The cell nearest to the centre of each pixel; never decreasing.
     pub nearest: Vec<u32>,
-    /// The cells whose values lie in each, one stretch behind the other.
+    /// The cells whose values lie in each pixel, in ranges that follow one another.
     pub inside: Vec<Range<u32>>,
-    /// Those that are on the axis; the others are empty.
+    /// The pixels on the axis; the others are empty.
     pub on_axis: Range<usize>,
-    /// The first pixel that was asked for comes last.
+    /// Whether the first requested pixel comes last.
     pub flipped: bool,
 }
 
-/// A coordinate that grows with the value, in which pixels are even.
+/// A coordinate that increases with the value and in which pixels are evenly spaced.
 #[derive(Debug, Clone, Copy)]
 enum Coordinate {
     Linear,
     /// The logarithm of positive values.
     Above,
-    /// That of negative ones.
+    /// The negative logarithm of the magnitude of negative values.
     Below,
 }
 
@@ -60,10 +60,10 @@ impl Coordinate {
     }
 }
 
-/// Whether these can be ends of a window; none stands for an end of the axis.
+/// Checks that these can be the ends of a window; none stands for an end of the axis.
 ///
 /// # Errors
-/// When one of them is no finite number, in words.
+/// A description of the fault when one of them is not finite.
 pub fn finite(ends: impl IntoIterator<Item = Option<f64>>) -> Result<(), &'static str> {
     match ends.into_iter().flatten().all(f64::is_finite) {
         true => Ok(()),
@@ -71,12 +71,12 @@ pub fn finite(ends: impl IntoIterator<Item = Option<f64>>) -> Result<(), &'stati
     }
 }
 
-/// The number at this part of the way between two others.
+/// The number at the share `part` of the way between two others.
 fn between(from: f64, to: f64, part: f64) -> f64 {
     let whole = to - from;
     match whole.is_finite() {
         true => from + whole * part,
-        // Halves of finite numbers are not too far apart.
+        // The difference of two halves of finite numbers is finite.
         false => 2.0 * (from / 2.0 + (to / 2.0 - from / 2.0) * part),
     }
 }
@@ -115,7 +115,7 @@ impl Stretch {
     }
 }
 
-/// The values of an axis in rising order, whichever way they run.
+/// The values of an axis in increasing order, whatever their order on the axis.
 struct Rising<'a> {
     values: &'a [f64],
     falls: bool,
@@ -131,7 +131,7 @@ impl Rising<'_> {
         self.coordinate.of(self.values[index])
     }
 
-    /// How many values come before the first that is not `below`.
+    /// How many values come before the first one that is not `below`.
     fn count(&self, below: impl Fn(f64) -> bool) -> usize {
         let (mut low, mut high) = (0, self.values.len());
         while low < high {
@@ -156,8 +156,8 @@ impl Rising<'_> {
         above
     }
 
-    /// Whether this lies on the axis: the cells at its ends reach as far beyond it as half way to
-    /// their neighbours, and one that has none everywhere.
+    /// Whether `to` lies on the axis. Each end cell extends beyond its value by half the distance
+    /// to its neighbour; a single cell extends everywhere.
     fn holds(&self, to: f64) -> bool {
         let last = self.values.len() - 1;
         if last == 0 {
@@ -191,10 +191,10 @@ impl Rising<'_> {
 }
 
 impl Pixels {
-    /// The pixels of a stretch of an axis with these values; there is at least one.
+    /// The pixels, at least one, of a stretch of an axis with these values.
     ///
     /// # Errors
-    /// When there is no such stretch, in words.
+    /// A description of the fault when there is no such stretch.
     pub(super) fn along(values: &[f64], stretch: &Stretch) -> Result<Self, String> {
         let (coordinate, from, to) = stretch.ends(values)?;
         let rising = Rising {
@@ -204,7 +204,7 @@ impl Pixels {
         };
         let count = stretch.pixels;
         let at = |part: f64| between(from, to, part / count as f64);
-        // How many values lie before the edge of a pixel, counted the way that pixels run.
+        // The number of values before each edge of a pixel, counted in the direction of the pixels.
         let rises = from <= to;
         let before = |edge: usize| match (rises, edge == count) {
             (true, false) => rising.count(|value| value < at(edge as f64)),
@@ -265,14 +265,14 @@ impl Pixels {
         from..to.min(self.on_axis.end).max(from)
     }
 
-    /// The pixels in which some of these cells may lie.
+    /// The pixels that may contain some of these cells.
     pub(super) fn holding(&self, cells: &Range<u32>) -> Range<usize> {
         let from = (self.inside).partition_point(|inside| inside.end <= cells.start);
         let to = (self.inside).partition_point(|inside| inside.start < cells.end);
         from..to.max(from)
     }
 
-    /// The pixel asked for as the `number`th.
+    /// The place of the `number`-th requested pixel.
     pub(super) fn place(&self, number: usize) -> usize {
         match self.flipped {
             true => self.len() - 1 - number,
@@ -280,8 +280,9 @@ impl Pixels {
         }
     }
 
-    /// The chunks of this length that hold a cell of these pixels: that one of them shows, and
-    /// whether that one shows or only hides.
+    /// The chunks of this length that contain cells of these pixels, each with a flag: true if a
+    /// pixel shows one of its cells, false if all are hidden. With `hidden`, chunks of the latter
+    /// kind are included.
     pub(super) fn chunks(&self, length: usize, hidden: bool) -> Vec<(u32, bool)> {
         let length = length as u32;
         let mut chunks: Vec<(u32, bool)> = Vec::new();
@@ -318,7 +319,7 @@ mod tests {
         Pixels::along(values, &stretch).unwrap()
     }
 
-    /// By looking at all cells for every pixel.
+    /// The pixels by a search through all cells for every pixel.
     fn by_hand(values: &[f64], (from, to): (f64, f64), pixels: usize, scale: Scale) -> Pixels {
         let coordinate = |value: f64| match scale {
             Scale::Linear => value,
@@ -356,7 +357,7 @@ mod tests {
             start..end
         };
         let inside: Vec<Range<u32>> = inside.into_iter().map(range).collect();
-        // Half way on beyond the first and the last value.
+        // The axis extends half a step beyond the first and the last value.
         let mut sorted: Vec<f64> = values.iter().map(|&value| coordinate(value)).collect();
         sorted.sort_by(f64::total_cmp);
         let last = sorted.len() - 1;
@@ -452,7 +453,7 @@ mod tests {
         let values = [-1.0, 0.0, 1.0, 2.0];
         for ends in [(-1e308, 1.2e308), (1e308, -1.2e308)] {
             let all = along(&values, Some(ends), 4, Scale::Linear);
-            // One pixel holds them all, and the others nothing.
+            // One pixel contains all of them, the others none.
             assert_eq!(all.on_axis.len(), 1, "{all:?}");
             assert_eq!(all.place(all.on_axis.start), 1);
             assert_eq!(all.inside[all.on_axis.start], 0..4);

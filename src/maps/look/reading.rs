@@ -16,9 +16,9 @@ use crate::store::chunk_layout::ChunkLayout;
 use crate::sweep::engine::STATUS_FILL;
 use crate::sweep::plan::tile::{memory_strides, place_of};
 
-/// A whole chunk is kept as runs where these take at most this part of it.
+/// A whole chunk is kept as runs if these take at most one such share of its bytes.
 const SHARE_OF_CHUNK: usize = 16;
-/// A plane's part of a chunk, where they take at most this part.
+/// The same for the part of a chunk in a plane.
 const SHARE_OF_SLAB: usize = 4;
 
 /// Reads the chunks of a map.
@@ -31,15 +31,15 @@ pub(super) struct Reading {
     short: Mutex<Short>,
 }
 
-/// A chunk of a column, and what of it lies in a plane.
+/// A chunk of a column, and its part in a plane.
 struct Part {
     column: usize,
     plane: Arc<Plane>,
-    /// Its number, row by row.
+    /// Its number, counted row by row.
     number: u64,
     /// Its first cell.
     offset: Vec<usize>,
-    /// Cells along the slower and the faster axis.
+    /// Ranges of cells along the slower and the faster axis.
     cells: (Range<u32>, Range<u32>),
     cut: Cut,
 }
@@ -96,7 +96,7 @@ impl Part {
         }
     }
 
-    /// The rows of the plane in a whole chunk, where they lie in it as rows.
+    /// The rows of the plane inside a whole chunk in which each row is contiguous.
     fn in_chunk<T>(&self, cells: &Arc<Cells<T>>) -> Slab<T> {
         Slab {
             cells: Arc::clone(cells),
@@ -105,7 +105,7 @@ impl Part {
         }
     }
 
-    /// The rows of the plane, taken out of a chunk.
+    /// The rows of the plane, copied out of a chunk.
     fn taken_out<T>(&self, cells: Cells<T>) -> Slab<T> {
         Slab {
             cells: Arc::new(cells),
@@ -119,7 +119,7 @@ impl Part {
     }
 }
 
-/// The number of the chunk whose first cell is at `offset`, row by row.
+/// The number of the chunk whose first cell is at `offset`, counted row by row.
 fn number_of(layout: &ChunkLayout, offset: &[usize]) -> u64 {
     let axes = offset.iter().zip(&layout.chunk).zip(&layout.shape);
     axes.fold(0, |number, ((&at, &length), &whole)| {
@@ -127,7 +127,7 @@ fn number_of(layout: &ChunkLayout, offset: &[usize]) -> u64 {
     })
 }
 
-/// What of a status says that something is amiss, or that it is none.
+/// The flags of a status that report a problem, or the fill value if there is no status.
 pub(super) fn amiss(status: u8) -> u8 {
     match status {
         STATUS_FILL => STATUS_FILL,
@@ -138,7 +138,7 @@ pub(super) fn amiss(status: u8) -> u8 {
 /// The cells of a chunk as they were read.
 struct Fetched<T> {
     cells: Cells<T>,
-    /// There is no such chunk: the version of the map then.
+    /// The version of the map at which the chunk was missing.
     missing: Option<u64>,
 }
 
@@ -153,7 +153,7 @@ impl Reading {
         }
     }
 
-    /// Shows the chunks of a window that are in memory; the others remain to be read.
+    /// Shows the chunks of a window that are in memory. The others remain to be read.
     pub(super) fn show_kept(&self, view: &View) {
         let mut jobs = std::mem::take(&mut *locked(&view.jobs));
         jobs.retain(|job| {
@@ -171,7 +171,7 @@ impl Reading {
         self.show(view, job, false).map(drop)
     }
 
-    /// Shows a chunk; false where it is to be one that is kept, and is not.
+    /// Shows a chunk. With `kept`, only one in memory; false if it is not there.
     fn show(&self, view: &View, job: Job, kept: bool) -> Result<bool, String> {
         let column = match job.status {
             true => self.facts.status(),
@@ -217,7 +217,8 @@ impl Reading {
         Ok(true)
     }
 
-    /// The rows of a plane in a chunk; none where they are to be kept ones, and are not.
+    /// The rows of a plane in a chunk. With `kept`, only those in memory; none if they are not
+    /// there.
     fn slab<T: Cell>(
         &self,
         part: &Part,
@@ -255,7 +256,7 @@ impl Reading {
         Ok(Some(self.take_out(part, &cells, missing, view.number)))
     }
 
-    /// The rows of a plane in a chunk of runs.
+    /// The rows of a plane in a chunk that is stored as runs.
     fn of_chunk<T: Cell>(
         &self,
         part: &Part,
@@ -269,7 +270,7 @@ impl Reading {
         }
     }
 
-    /// Takes the rows of a plane out of a chunk, and keeps them.
+    /// Copies the rows of a plane out of a chunk, and keeps them.
     fn take_out<T: Cell>(
         &self,
         part: &Part,

@@ -1,25 +1,25 @@
-//! Cells that were read, kept as long as there is room.
+//! Cells that were read, kept while there is room.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::cells::AnyCells;
 
-/// Bytes of cells that are kept.
+/// The most bytes of cells that are kept.
 const MOST_BYTES: usize = 48 << 20;
-/// Bytes that an entry takes besides its cells, about.
+/// Approximate bytes of an entry besides its cells.
 const BESIDES: usize = 400;
 
-/// A plane of a map: its slower and its faster axis, and where it lies along the others.
+/// A plane of a map: its slower and its faster axis, and its place along the others.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct Plane {
-    /// None: a line.
+    /// None for a line.
     pub slow: Option<usize>,
     pub fast: usize,
     pub at: Vec<usize>,
 }
 
-/// Which cells these are: all of a chunk, or what lies in a plane.
+/// The key of cells: all of a chunk, or its part in a plane.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct Key {
     pub column: usize,
@@ -31,9 +31,9 @@ pub(super) struct Key {
 #[derive(Debug)]
 struct Kept {
     cells: AnyCells,
-    /// When it was last wanted.
+    /// The time of the last access.
     wanted: u64,
-    /// Of a chunk that was not there: the version of the map then.
+    /// For a chunk that was missing: the version of the map at that time.
     missing: Option<u64>,
 }
 
@@ -45,8 +45,8 @@ pub(super) struct Shelf {
 }
 
 impl Shelf {
-    /// The cells under this key, if they are in memory and of this version of the map; `now` counts
-    /// accesses.
+    /// The cells under this key, if they are kept and valid in this version of the map. `now`
+    /// counts accesses.
     pub(super) fn get(&mut self, key: &Key, version: u64, now: u64) -> Option<AnyCells> {
         let kept = self.kept.get_mut(key)?;
         if kept.missing.is_some_and(|then| then != version) {
@@ -56,12 +56,12 @@ impl Shelf {
         Some(kept.cells.clone())
     }
 
-    /// Whether cells that were kept are those of a chunk that is not there.
+    /// The version at which the chunk of these cells was missing, if it was.
     pub(super) fn is_missing(&self, key: &Key) -> Option<u64> {
         self.kept.get(key)?.missing
     }
 
-    /// Keeps cells where there is room, or where others were not wanted for longer.
+    /// Keeps cells if there is room, dropping others that were not accessed for longer.
     pub(super) fn put(&mut self, key: Key, cells: AnyCells, missing: Option<u64>, now: u64) {
         let needed = cells.bytes() + BESIDES;
         if self.bytes + needed > MOST_BYTES {
@@ -81,7 +81,8 @@ impl Shelf {
         }
     }
 
-    /// Drops what was wanted longest ago, a quarter of it; nothing that is wanted now.
+    /// Drops the quarter that was not accessed for the longest time; nothing that was accessed at
+    /// `now`.
     fn drop_older(&mut self, now: u64) {
         let mut times: Vec<(u64, usize)> = self
             .kept

@@ -1,4 +1,4 @@
-//! Chunks of few bytes, which are not inflated again where another one had the same.
+//! Short chunks, which are inflated once if several have equal bytes.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -6,12 +6,12 @@ use std::sync::Arc;
 use super::cells::{AnyCells, Cell, Cells};
 use crate::store::chunk_layout::ChunkLayout;
 
-/// Chunks of fewer bytes are remembered.
+/// Chunks of fewer bytes than this are remembered.
 const SHORT: usize = 2048;
-/// So many of them.
+/// The most chunks that are remembered.
 const MOST: usize = 64;
 
-/// What is stored, and all that tells what it is inflated to.
+/// The stored bytes, with everything that determines what they inflate to.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct Stored {
     cells: usize,
@@ -21,7 +21,7 @@ pub(super) struct Stored {
     bytes: Vec<u8>,
 }
 
-/// Chunks in runs, by what is stored.
+/// Chunks as runs, by their stored bytes.
 #[derive(Debug, Default)]
 pub(super) struct Short(HashMap<Stored, AnyCells>);
 
@@ -37,12 +37,12 @@ impl Short {
         })
     }
 
-    /// The cells of a chunk that is remembered.
+    /// The cells of a remembered chunk.
     pub(super) fn get<T: Cell>(&self, key: &Stored) -> Option<Cells<T>> {
         T::unwrapped(self.0.get(key)?)?.copied_runs()
     }
 
-    /// Remembers the cells of a chunk, if they are runs.
+    /// Remembers the cells of a chunk, if they are stored as runs.
     pub(super) fn put<T: Cell>(&mut self, key: Stored, cells: &Cells<T>) {
         if let Some(runs) = cells.copied_runs().filter(|_| self.0.len() < MOST) {
             self.0.insert(key, T::wrapped(Arc::new(runs)));

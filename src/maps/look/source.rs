@@ -1,5 +1,5 @@
-//! Where the cells of a map that is looked at come from: its file or, where there is none that is
-//! complete, the tiles of its run.
+//! The source of the cells of a displayed map: its file or, if there is no complete one, the tiles
+//! of its run.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
@@ -14,19 +14,19 @@ use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Plan};
 
-/// How often it is looked whether a map is still what it was.
+/// The time between checks whether a map has been replaced.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(500);
-/// How often it is looked whether more of it is there.
+/// The time between checks for new tiles.
 const BETWEEN_REFRESHES: Duration = Duration::from_secs(2);
 
-/// What stays as it is while a map is looked at.
+/// The facts about a map that do not change while it is displayed.
 #[derive(Debug, Clone)]
 pub struct Facts {
     /// Its axes.
     pub axes: Vec<MapAxis>,
     /// Its fields.
     pub fields: Vec<Field>,
-    /// The sweep of the map; none where its text is not understood or does not fit the map.
+    /// The sweep of the map; none where its text cannot be read or does not fit the map.
     pub plan: Option<Plan>,
     /// How its columns are stored: the fields, then the status.
     pub layouts: Vec<ChunkLayout>,
@@ -60,7 +60,7 @@ impl Facts {
         self.fields.len()
     }
 
-    /// The bits of cells of a column that are not computed.
+    /// The bits of cells of a column that are not computed yet.
     #[must_use]
     pub fn fill(&self, column: usize) -> u64 {
         match self.fields.get(column).map(|field| field.storage()) {
@@ -79,7 +79,7 @@ pub(super) enum Cells {
     Growing(Box<GrowingMap>),
 }
 
-/// A map, as far as it is there.
+/// A map, as far as it is computed.
 #[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
@@ -87,19 +87,19 @@ pub(super) struct Source {
     stamp: Option<Stamp>,
     looked: Instant,
     refreshed: Instant,
-    /// A number that grows as tiles come.
+    /// A number that changes when tiles are added.
     pub version: u64,
-    /// Cells that are there.
+    /// Number of computed cells.
     pub cells_done: u64,
 }
 
-/// What came of a look whether a map is what it was.
+/// The result of a check whether a map is unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Still {
     Same,
-    /// More cells are there.
+    /// Cells have been added.
     Grown,
-    /// Another map, or none, has taken the place of this one: it has to be opened again.
+    /// The map is gone or another one has taken its place; it must be opened again.
     Gone,
 }
 
@@ -139,7 +139,7 @@ impl Source {
         Ok((source, facts))
     }
 
-    /// Whether it is still what it was.
+    /// Checks whether the map is unchanged.
     pub(super) fn look(&mut self) -> Still {
         let now = Instant::now();
         if now - self.looked < BETWEEN_LOOKS {
@@ -168,7 +168,7 @@ impl Source {
         Still::Grown
     }
 
-    /// The bytes of a chunk as they are stored; none where it is not computed yet.
+    /// The stored bytes of a chunk; none where it is not computed yet.
     pub(super) fn stored(
         &mut self,
         column: usize,
@@ -181,14 +181,14 @@ impl Source {
     }
 }
 
-/// A number that changes whenever tiles have come.
+/// A number that changes whenever tiles were added or the file was written.
 fn version_of(stamp: Option<Stamp>, cells: &Cells) -> u64 {
     match cells {
         Cells::Growing(growing) => growing.done().0,
         Cells::File(_) => {
             let since = |time: SystemTime| time.duration_since(SystemTime::UNIX_EPOCH).ok();
             let modified = stamp.and_then(|stamp| since(stamp.modified?));
-            // Exact as a number of JavaScript.
+            // Microseconds are exact as a JavaScript number.
             modified.map_or(0, |time| time.as_micros() as u64)
         }
     }

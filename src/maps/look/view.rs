@@ -1,4 +1,4 @@
-//! A window that is being read: its pixels, and the chunks that are still to be looked at.
+//! A window that is being read: its pixels, and the chunks that are still to be read.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -44,7 +44,7 @@ impl AnyCanvas {
 pub struct View {
     pub(super) asked: Asked,
     pub(super) version: u64,
-    /// Grows from view to view.
+    /// Increases from view to view.
     pub(super) number: u64,
     pub(super) plane: std::sync::Arc<Plane>,
     pub(super) column: usize,
@@ -54,7 +54,7 @@ pub struct View {
     pub(super) crowded: bool,
     pub(super) field: Mutex<AnyCanvas>,
     pub(super) status: Mutex<Canvas<u8>>,
-    /// Which pixels hide cells with which something is amiss; none where no such were found.
+    /// The pixels that hide flagged cells; none while no such cells were found.
     amiss: Mutex<Option<Canvas<u8>>>,
     pub(super) jobs: Mutex<Jobs>,
     total: usize,
@@ -62,16 +62,16 @@ pub struct View {
     damage: Mutex<Option<String>>,
 }
 
-/// A lock whose holder cannot have left things half done.
+/// Locks a mutex. A poisoned one is accepted: no holder leaves its data inconsistent.
 pub(super) fn locked<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     of.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 impl View {
-    /// Nothing is read yet.
+    /// A view of which nothing is read yet.
     ///
     /// # Errors
-    /// When there is no such window, in words.
+    /// A description of the fault when there is no such window.
     pub(super) fn new(
         asked: Asked,
         facts: &Facts,
@@ -127,7 +127,7 @@ impl View {
 
     /// Bytes of its pixels.
     pub(super) fn bytes(&self) -> usize {
-        // Value and bits, and the same of the status and of what is amiss.
+        // Value and bits of the field, and the same for the status and for flagged cells.
         self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 5)
     }
 
@@ -135,7 +135,7 @@ impl View {
         self.done.load(Ordering::Acquire) >= self.total
     }
 
-    /// A job is done; cells that could not be read stay marked as such.
+    /// Counts a finished job. Cells that could not be read stay marked as unread.
     pub(super) fn finish_one(&self, done: Result<(), String>) {
         if let Err(why) = done {
             locked(&self.damage).get_or_insert(why);
@@ -143,7 +143,7 @@ impl View {
         self.done.fetch_add(1, Ordering::Release);
     }
 
-    /// Marks pixels that hide cells of a slab with which something is amiss; there are few such.
+    /// Marks pixels that hide flagged cells of a slab. Such cells are rare.
     pub(super) fn mark_amiss(&self, slab: &Slab<u8>, under: &Under) {
         let mut hiding = locked(&self.amiss);
         let pixels = self.slow.len() * self.fast.len();
@@ -151,7 +151,7 @@ impl View {
         hiding.compare(slab, under);
     }
 
-    /// The bits of pixels, by those of the field and by what is known of their status.
+    /// The bits of the pixels, from those of the field and of the status.
     fn marks(
         &self,
         of_field: &[u8],
@@ -184,10 +184,10 @@ impl View {
         all.collect()
     }
 
-    /// The window as it is so far.
+    /// The window, as far as it is read.
     #[must_use]
     pub fn shot(&self, facts: &Facts) -> Shot {
-        // Before the pixels are looked at: what is called complete is.
+        // This is read before the pixels, so that a window reported as complete is complete.
         let done = self.done.load(Ordering::Acquire);
         let shown = |axis: usize, pixels: &Pixels| {
             let index = (0..pixels.len()).map(|i| pixels.nearest[pixels.place(i)]);
@@ -239,7 +239,7 @@ impl View {
     }
 }
 
-/// The values at places, `fill` where they are hidden.
+/// The values at the given places, `fill` where the pixel shows no cell.
 fn picked<T: Cell>(
     canvas: &Canvas<T>,
     places: impl Iterator<Item = usize>,

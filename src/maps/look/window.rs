@@ -6,11 +6,11 @@ use crate::sweep::Field;
 /// A window on a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asked {
-    /// What it shows.
+    /// The field to show.
     pub field: Field,
     /// The axis from left to right.
     pub x: usize,
-    /// The axis from bottom to top; none: a line along `x`.
+    /// The axis from bottom to top; none for a line along `x`.
     pub y: Option<usize>,
     /// The index along every axis; the entries of `x` and `y` are not used.
     pub at: Vec<usize>,
@@ -40,26 +40,27 @@ pub enum Numbers {
     F64(Vec<f64>),
 }
 
-/// What a window shows, as far as it was read.
+/// The contents of a window, as far as they are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shot {
-    /// Everything was read.
+    /// Whether everything is read.
     pub complete: bool,
-    /// The part that was, 0 to 1.
+    /// The share that is read, 0 to 1.
     pub progress: f64,
-    /// Changes when more cells are there.
+    /// Changes when cells are added.
     pub version: u64,
     /// Along x.
     pub x: Shown,
     /// Along y.
     pub y: Option<Shown>,
-    /// The cells nearest to the pixels, those of the first x first; fill values where none is.
+    /// The cells nearest to the pixels, those of the first x first; fill values where there is
+    /// none.
     pub values: Numbers,
     /// Their status.
     pub status: Vec<u8>,
     /// [`SEVERAL`](super::SEVERAL), [`UNREAD`](super::UNREAD),
     /// [`NOT_COMPUTED`](super::NOT_COMPUTED), [`BEYOND`](super::BEYOND).
     pub bits: Vec<u8>,
-    /// Why some cells could not be read.
+    /// Why some cells could not be read, if so.
     pub damage: Option<String>,
 }

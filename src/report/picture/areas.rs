@@ -3,14 +3,14 @@
 use super::page::Area;
 use super::scene::Point;
 
-/// Places are tried at this distance, in pixels.
+/// Distance of the places that are tried, in pixels.
 const STEP: f64 = 12.0;
-/// Room that matters around a text, relative to its height.
+/// Distance from a text, relative to its height, beyond which more room does not matter.
 const ROOM: f64 = 8.0;
 
-/// The middle of a text of this size (width, height) between two lines, each by growing x, as far
-/// as it matters from all lines; none where it does not fit. `lower` and `upper`: where there is
-/// none, the area reaches the frame.
+/// The centre of a text of this size (width, height) between two lines with increasing x, as far
+/// from the lines as matters; none where it does not fit. Without `lower` or `upper` the area
+/// reaches the frame.
 pub(super) fn between(
     (lower, upper): (Option<&[Point]>, Option<&[Point]>),
     lines: &[&[Point]],
@@ -29,7 +29,7 @@ pub(super) fn between(
     };
     let within = |at: &Point| {
         let ends = [at.0 - 0.5 * width, at.0, at.0 + 0.5 * width];
-        // Pixels grow downwards.
+        // Pixel coordinates increase downwards.
         ends.iter().all(|x| {
             lower.is_none_or(|line| height_at(line, *x).is_some_and(|y| at.1 < y))
                 && upper.is_none_or(|line| height_at(line, *x).is_some_and(|y| at.1 > y))
@@ -59,7 +59,7 @@ fn distance(at: Point, line: &[Point], (width, height): (f64, f64)) -> f64 {
     line.iter().map(away).fold(f64::INFINITY, f64::min)
 }
 
-/// The height of a line at x; none where it does not reach.
+/// The height of a line at x; none beyond its ends.
 fn height_at(line: &[Point], x: f64) -> Option<f64> {
     let after = line.partition_point(|p| p.0 <= x);
     let (a, b) = (line.get(after.checked_sub(1)?)?, line.get(after)?);

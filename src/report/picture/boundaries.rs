@@ -1,4 +1,4 @@
-//! The boundaries of stability in one plane, a colour for each value of the axis outside it.
+//! The boundaries of stability in one plane, with a colour for each value of the axis outside it.
 
 use super::choice;
 use super::clip;
@@ -25,9 +25,9 @@ use crate::store::map_file::MapCurve;
 const WIDTH: f64 = 3.0;
 const THIN: f64 = 1.3;
 const SHADE: f64 = 0.13;
-/// Dashes of lines that lead to an inset, (length, gap).
+/// Dashes of the lines that connect an inset, (length, gap).
 const DASH: (f64, f64) = (6.0, 6.0);
-/// More than this many cells along an axis are not read to learn what holds where no curve lies.
+/// The most cells per axis that are read to learn the stability where no curve lies.
 const MOST_CELLS: usize = 600;
 
 /// The curves of one value of the outer axis.
@@ -125,7 +125,7 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
                 .zip(value)
                 .map(|(axis, a)| Rich::plain(&number(a.values[index[axis]]))),
             bounding: here().filter(bounds).collect(),
-            // With several values at once they would hide what bounds the stable regions.
+            // With several values, these would hide the boundaries of the stable regions.
             others: here().filter(|p| !several && !bounds(p)).collect(),
             decaying: of_family().filter(|c| !crossing(c)).collect(),
             index,
@@ -199,7 +199,7 @@ fn draw_curves(families: &[Family], degrees: &Degrees, panel: &Panel, scene: &mu
     }
 }
 
-/// Frames what an inset shows, clears its place, and leads from the one to the other.
+/// Frames the source of an inset, clears its place, and connects the two.
 fn link(inset: &Inset, scene: &mut Scene) {
     let u = scene.unit();
     let (source, area) = (inset.source, inset.panel.area);
@@ -214,7 +214,7 @@ fn link(inset: &Inset, scene: &mut Scene) {
     };
     let (from, to) = (corners(source), corners(area));
     scene.outline(from[0], from[2], SOFT_INK, THIN * u);
-    // The two corners of each that face the other.
+    // The two corners of each that face the other one.
     let facing = match () {
         () if area.right <= source.left => [(0, 1), (3, 2)],
         () if area.left >= source.right => [(1, 0), (2, 3)],
@@ -227,7 +227,7 @@ fn link(inset: &Inset, scene: &mut Scene) {
     scene.rect(to[0], to[2], PAPER);
 }
 
-/// Writes at the curves to which family they belong; gives the places that this takes.
+/// Labels the curves of each family; returns the areas of the labels.
 fn label(families: &[Family], panel: &Panel, scene: &mut Scene) -> Vec<page::Area> {
     let u = scene.unit();
     let size = 0.92 * SMALL * u;

@@ -1,4 +1,4 @@
-//! Which field a picture shows, and what is written above it.
+//! Chooses the field of a picture and its title.
 
 use super::error::PictureError;
 use super::options::{Named, PictureOptions};
@@ -11,7 +11,7 @@ use crate::sweep::Field;
 /// The field that a picture shows.
 pub(super) struct Choice {
     pub field: Field,
-    /// Nobody asked for it or named it.
+    /// Whether it was neither requested nor named by the sweep.
     by_default: bool,
 }
 
@@ -32,13 +32,13 @@ impl Choice {
         })
     }
 
-    /// True where curves of the map say as much as its cells.
+    /// Whether curves of the map show as much as its cells.
     pub(super) fn leaves_curves(&self, map: &MapFile) -> bool {
         self.by_default && says_more(map).is_none()
     }
 
-    /// The fields that one line picture shows: this one and, where it is there by default and for
-    /// no `several` values of an axis, those that it is compared with.
+    /// The fields of one line picture: this one and, if it is shown by default and without
+    /// `several` values of an axis, those that it is compared with.
     pub(super) fn shown_together(&self, map: &MapFile, several: bool) -> Vec<Field> {
         if !self.by_default || several || !self.field.of_limit() {
             return vec![self.field];
@@ -53,7 +53,7 @@ impl Choice {
     }
 }
 
-/// The field that a sweep names for pictures of the map: the sweep at hand, else the map's own.
+/// The field named for pictures by the sweep file at hand, else by the map's own sweep.
 pub(super) fn named(map: &MapFile, options: &PictureOptions) -> Option<Field> {
     let named = match options.named {
         Named::InMap => map.sweep().ok()?.picture,
@@ -63,9 +63,8 @@ pub(super) fn named(map: &MapFile, options: &PictureOptions) -> Option<Field> {
     named.filter(|field| map.fields().contains(field))
 }
 
-/// A field of the map that says more than where sliding is stable: what v0 is good for,
-/// from where sliding is smooth, the critical velocity, what becomes of motions, or the rate at
-/// which disturbances decay.
+/// A field of the map that shows more than the stability of sliding: the regime, the velocity above
+/// which sliding is smooth, the critical velocity, the outcome, or the spectral abscissa.
 fn says_more(map: &MapFile) -> Option<Field> {
     let more = [
         Field::Regime,
@@ -77,21 +76,21 @@ fn says_more(map: &MapFile) -> Option<Field> {
     more.into_iter().find(|field| map.fields().contains(field))
 }
 
-/// What says most about the map.
+/// The most informative field of the map.
 fn default_field(map: &MapFile) -> Field {
     says_more(map)
         .or_else(|| map.stability_field())
-        // What is special of cells says least where nothing is.
+        // Reasons come last: most cells are not special.
         .or_else(|| map.fields().iter().copied().find(|f| *f != Field::Reason))
         .unwrap_or(Field::NUnstable)
 }
 
-/// Of longer titles no more is drawn.
+/// The most characters of a title.
 const LONGEST_TITLE: usize = 400;
 
-/// The title of a picture of `field` of a sweep without one.
+/// The title of a picture of `field` if the sweep has none.
 fn untitled(map: &MapFile, field: Field) -> &'static str {
-    // The outcome of a map of critical velocities is how stick-slip ends.
+    // Beside critical velocities, the outcome is the end of stick-slip.
     let beside_vc = || map.fields().iter().any(|field| field.of_vc());
     if field.of_limit() {
         "Critical velocity as the delay vanishes"
@@ -106,7 +105,7 @@ fn untitled(map: &MapFile, field: Field) -> &'static str {
     }
 }
 
-/// The title asked for, or that of the map's sweep.
+/// The requested title, or that of the map's sweep.
 pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
     let of_sweep = options.title.clone().or_else(|| map.root_text(root::TITLE));
     let of_system = || Some(map.system()?.title.clone());
@@ -115,14 +114,15 @@ pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
     Some(shortened(&title))
 }
 
-/// A text of a map, which may come from anywhere.
+/// Shortens a text of a map, which may come from anywhere.
 fn shortened(text: &str) -> String {
     let cut: String = text.chars().take(LONGEST_TITLE).collect();
     visible_line(&cut)
 }
 
-/// The title of a picture of `field`, and notes that name it. The title of a sweep is about the
-/// field that it shows unasked: a picture of another one is headed by that, titled or not.
+/// The title of a picture of `field`, and notes that name the field. The title of a sweep is about
+/// the field that it shows by default. A picture of another field is headed by that field, whether
+/// the sweep has a title or not.
 pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
     let unit = map.field_unit(field);
     let shown = named(map, options).unwrap_or_else(|| default_field(map));

@@ -1,4 +1,4 @@
-//! Lines cut at the edges of an area.
+//! Cuts lines at the edges of an area.
 
 use super::page::Area;
 use super::scene::Point;

@@ -1,4 +1,4 @@
-//! Colours: perceptually ordered and readable by the colour-blind.
+//! Colours: perceptually ordered, and distinguishable by the colour-blind.
 
 use super::gradient::ColourMap;
 use crate::sweep::Field;
@@ -9,36 +9,36 @@ pub(super) struct Rgb(pub u8, pub u8, pub u8);
 
 /// Text and frames.
 pub(super) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
-/// Text of less weight.
+/// Less prominent text.
 pub(super) const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Grid lines.
 pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 /// Paper.
 pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
-/// Cells without a value, below the lines over them.
+/// Cells without a value, below the hatching.
 pub(super) const NO_VALUE: Rgb = Rgb(0xd9, 0xd9, 0xd9);
-/// Cells whose value is not known, below the lines over them.
+/// Cells whose value is not known, below the hatching.
 pub(super) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
-/// Those lines.
+/// The lines of the hatching.
 pub(super) const HATCH: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Cells without a value because the block lifts off.
 pub(super) const LIFTS_OFF: Rgb = Rgb(0xc9, 0x94, 0xc7);
 /// Cells without a value because stick-slip persists.
 pub(super) const PERSISTS: Rgb = Rgb(0xa0, 0x5e, 0x4a);
-/// Sizes that are 0, above and below a scale that has no place for them.
+/// Values of 0, and values above and below a scale that does not include them.
 pub(super) const ZERO: Rgb = Rgb(0xbf, 0xe3, 0xff);
 pub(super) const ABOVE: Rgb = Rgb(0xe1, 0xfc, 0xc2);
 pub(super) const BELOW: Rgb = Rgb(0x00, 0x00, 0x00);
-/// Sizes that are infinite.
+/// Infinite values on a scale of sizes.
 pub(super) const INFINITE: Rgb = Rgb(0xf5, 0x44, 0x00);
 pub(super) const MINUS_INFINITE: Rgb = Rgb(0x7f, 0x3b, 0x08);
 /// Infinite values on a scale with two sides: (worse, better).
 const ENDLESS: (Rgb, Rgb) = (Rgb(0x00, 0x00, 0x00), Rgb(0x20, 0x40, 0xff));
 /// Stable cells.
 pub(super) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
-/// The same below a line.
+/// Stable areas below a line.
 pub(super) const STABLE_TINT: Rgb = Rgb(0xa0, 0xd5, 0xcf);
-/// Where the block sticks, below a line.
+/// Areas where the block sticks, below a line.
 pub(super) const STUCK: Rgb = Rgb(0xe2, 0xd8, 0xc0);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
 pub(super) const UNSTABLE: [Rgb; 4] = [
@@ -48,9 +48,9 @@ pub(super) const UNSTABLE: [Rgb; 4] = [
     Rgb(0x7a, 0x46, 0x08),
 ];
 
-/// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is
-/// none. Then ends of stick-slip: grazing, fold, period doubling, irregular, persists, never, lost.
-/// Of the colour-blind, too, none takes one for another.
+/// Outcomes: slides, sticks and slips, oscillates, lifts off, diverges, undecided, none. Then the
+/// ends of stick-slip: grazing, fold, period doubling, irregular, persists, never, lost. The
+/// colour-blind can tell all of them apart.
 const OUTCOMES: [Rgb; 14] = [
     STABLE,
     Rgb(0xdf, 0xc2, 0x7d),
@@ -68,7 +68,7 @@ const OUTCOMES: [Rgb; 14] = [
     Rgb(0xbb, 0x77, 0xdd),
 ];
 
-/// Working velocities that are stable, bistable, unstable, beyond a lift-off; undecided ones.
+/// Working velocities: stable, bistable, unstable, beyond a lift-off, undecided.
 const REGIMES: [Rgb; 5] = [
     STABLE,
     Rgb(0xc2, 0xe3, 0xf2),
@@ -98,16 +98,16 @@ const FEW: [Rgb; 4] = [
     Rgb(0x7a, 0x46, 0x08),
 ];
 
-/// Steps of [`two_sided`] on each side of zero: finer than the eye tells apart, coarse enough for
+/// Steps of [`two_sided`] on each side of zero: too fine to be distinguished, coarse enough for
 /// cells to merge.
 const STEPS: f64 = 32.0;
 
-/// The weakest colour of [`two_sided`] on either side of zero, as a part of the strongest.
+/// The weakest colour of [`two_sided`] on either side of zero, as a share of the strongest.
 const TINT: f64 = 0.2;
 /// Steps of [`of_size`], for the same reasons.
 const SIZE_STEPS: f64 = 64.0;
 
-/// The part of viridis that lines take: what follows is too light on white.
+/// The part of viridis used for lines: the rest is too light on white.
 const LINES: f64 = 0.8;
 
 /// The colour of line `i` of `n`, from dark to light.
@@ -148,11 +148,11 @@ pub(super) fn last_of_few() -> usize {
     FEW.len() - 1
 }
 
-/// The colour of a value on a scale with two sides, where ±`range` are the full colours: the
-/// worse one below zero, the better one above.
+/// The colour of a value on a scale with two sides: the worse colour below zero, the better one
+/// above, at full strength at ±`range`.
 ///
-/// Colours go with the square root, and both sides begin with a tint: stable cells with little to
-/// spare are the most common ones, and must not look like unstable ones.
+/// The strength grows with the square root, and both sides begin with a tint. Cells that are just
+/// stable are the most common ones, and must not look like unstable cells.
 pub(super) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
     let part = (value / range).clamp(-1.0, 1.0);
     if part.is_nan() {
@@ -166,7 +166,7 @@ pub(super) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
     map.on_side(strength.copysign(part))
 }
 
-/// The colour of a value beyond the ends of such a scale, or of an infinite one.
+/// The colour of a value beyond the ends of a scale with two sides, or of an infinite one.
 pub(super) fn beyond(map: ColourMap, value: f64) -> Rgb {
     let (worse, better) = match value.is_infinite() {
         true => ENDLESS,
@@ -175,12 +175,12 @@ pub(super) fn beyond(map: ColourMap, value: f64) -> Rgb {
     if value < 0.0 { worse } else { better }
 }
 
-/// The colour of a size at a part of the way from small to large: from dark to light.
+/// The colour of a size at `part` of the way from small to large: from dark to light.
 pub(super) fn of_size(map: ColourMap, part: f64) -> Rgb {
     map.at((part * SIZE_STEPS).round() / SIZE_STEPS)
 }
 
-/// `colour` mixed with paper; 0: paper.
+/// `colour` mixed with paper; 0 gives paper.
 pub(super) fn pale(colour: Rgb, part: f64) -> Rgb {
     mix(PAPER, colour, part)
 }

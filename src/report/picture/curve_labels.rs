@@ -1,14 +1,14 @@
-//! Places for labels on curves, where they touch no other curve; where there is none, away from it,
-//! with a line that leads there.
+//! Places for labels on curves, where they touch no other curve. Where there is none, a label
+//! stands away from its curve, with a line that leads to it.
 
 use std::collections::HashMap;
 
 use super::page::Area;
 use super::scene::Point;
 
-/// Curves are looked at in steps of this many pixels.
+/// Step along a curve, in pixels.
 const STEP: f64 = 5.0;
-/// Side of the squares in which points are kept.
+/// Side of the squares in which points are stored.
 const SQUARE: f64 = 40.0;
 /// Distance beyond which more room does not matter.
 const ENOUGH_ROOM: f64 = 60.0;
@@ -18,41 +18,41 @@ pub(super) type Curves = Vec<Vec<Point>>;
 
 /// Distance of a text beside its curve.
 const BESIDE: f64 = 9.0;
-/// What room a place on the curve may lack, compared with one beside it, where it is less clear to
-/// what the text belongs.
+/// How much room a place on the curve may give up against one beside it, where it is less clear to
+/// which curve the text belongs.
 const ON_CURVE: f64 = 35.0;
-/// What room a place at the longest curve may lack, compared with one at a tiny lobe.
+/// How much room a place at the longest curve may give up against one at a tiny lobe.
 const LONG_CURVE: f64 = 50.0;
-/// A text nearer to another curve than this could be taken for that one's.
+/// A text closer than this to another curve could be taken for the label of that one.
 const APART: f64 = 3.0;
 
-/// How far away from its curve a text may stand.
+/// Distances from its curve at which a text may stand.
 const AWAY: [f64; 6] = [50.0, 75.0, 100.0, 130.0, 170.0, 220.0];
-/// In how many directions.
+/// Number of directions that are tried.
 const DIRECTIONS: u32 = 16;
-/// Points of a curve from which a text is led away, at most.
+/// The most points of a curve from which a line may lead to a text.
 const MOST_ANCHORS: usize = 24;
-/// What a pixel of a curve below a text costs, in pixels of distance.
+/// The cost of each pixel of curve that a text hides, in pixels of distance.
 const HIDING: f64 = 1.5;
-/// Side of the square around a point from which a line leads: curves in it make unclear which one
+/// Side of the square around the start of a line: with other curves in it, it is unclear which one
 /// is meant.
 const CLEAR: f64 = 24.0;
 
-/// Where a text stands.
+/// The place of a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// Its middle.
+    /// Its centre.
     pub at: Point,
-    /// The point of its curve from which a line leads there, if it stands away from it.
+    /// The start of the line that leads to it, if the text stands away from its curve.
     pub from: Option<Point>,
 }
 
-/// For each set of curves a place on one of them, beside it or away from it, for the middle of a
-/// text of this size; none where there is no room at all.
+/// For each set of curves, the centre of a text of this size on one of them, beside it or away from
+/// it; none where there is no room at all.
 pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Place>> {
     let points = Points::of(sets);
     let mut taken: Vec<(Point, (f64, f64))> = Vec::new();
-    // Short curves have the fewest places: they choose first.
+    // Short curves have the fewest places, so they choose first.
     let mut order: Vec<usize> = (0..sets.len()).collect();
     let length = |i: &usize| sets[*i].0.iter().map(Vec::len).sum::<usize>();
     order.sort_by_key(length);
@@ -88,8 +88,8 @@ pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Pl
     places
 }
 
-/// The place nearest to a set of curves, beside which others leave no room, where a text hides
-/// little.
+/// The nearest place away from a set of curves, for a text that does not fit beside them, where it
+/// hides little.
 fn led_away(
     points: &Points,
     curves: &Curves,
@@ -169,7 +169,7 @@ fn stepped(curve: &[Point]) -> Vec<Point> {
     points
 }
 
-/// The points of all curves by square, with the set that they belong to.
+/// The points of all curves by square, each with the number of its set.
 struct Points(HashMap<(i64, i64), Vec<(usize, Point)>>);
 
 impl Points {
@@ -183,9 +183,9 @@ impl Points {
         Self(squares)
     }
 
-    /// How good a text at `at` is: how far the curves of other sets stay away, up to
-    /// [`ENOUGH_ROOM`], with a preference for places on its own curve where it hides little of it;
-    /// none where another curve is too near, or where it hides more than a stretch of its own.
+    /// A score for a text at `at`: its distance from the curves of other sets, up to
+    /// [`ENOUGH_ROOM`], plus a bonus for a place on its own curve that hides little of it. None
+    /// where another curve is too near, or too much of its own is hidden.
     fn room(&self, own: usize, at: Point, (width, height): (f64, f64)) -> Option<f64> {
         let reach = (0.5 * width + ENOUGH_ROOM, 0.5 * height + ENOUGH_ROOM);
         let (low, high) = (
@@ -221,7 +221,7 @@ impl Points {
 }
 
 impl Points {
-    /// The length of all curves below a text.
+    /// The length of all curves that a text hides.
     fn hidden(&self, at: Point, (width, height): (f64, f64)) -> f64 {
         let half = (0.5 * width + APART, 0.5 * height + APART);
         let (low, high) = (

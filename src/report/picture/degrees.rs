@@ -1,4 +1,4 @@
-//! Curves of degrees of stability: dashed, the shorter the dashes the larger σ.
+//! Curves of degrees of stability: dashed, with shorter dashes for larger σ.
 
 use super::colour::Rgb;
 use super::legend::Swatch;
@@ -9,11 +9,11 @@ use crate::store::map_file::MapCurve;
 
 /// Width of the curves, in units of the picture.
 pub(super) const WIDTH: f64 = 1.6;
-/// Length of the longest dashes and what each further degree leaves of it, in units of the picture.
+/// Length of the longest dashes, in units of the picture, and the factor for each further degree.
 const LONGEST: f64 = 16.0;
 const SHRINKING: f64 = 0.5;
 const SHORTEST: f64 = 0.5;
-/// Gap behind a dash.
+/// Gap after a dash.
 const GAP: f64 = 6.0;
 
 /// The degrees of stability above zero of some curves, increasing.
@@ -51,7 +51,7 @@ impl Degrees {
     }
 }
 
-/// (length of a dash, of the gap behind it) of the `i`-th degree, in units of the picture.
+/// (length of a dash, length of the gap) of the `i`-th degree, in units of the picture.
 fn dash(i: usize) -> (f64, f64) {
     let length = LONGEST * SHRINKING.powi(i.min(16) as i32);
     (length.max(SHORTEST), GAP)

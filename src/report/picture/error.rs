@@ -8,7 +8,7 @@ use crate::sweep::input::quantity::Quantity;
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    /// The map could not be read, or the picture not be written.
+    /// The map could not be read, or the picture could not be written.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The name of the picture does not end in .png, .svg or .pdf.
@@ -17,13 +17,13 @@ pub enum PictureError {
         /// The name.
         path: PathBuf,
     },
-    /// The picture would replace what it shows.
+    /// The picture would replace the file that it shows.
     #[error("the picture would replace {}, which it shows", path.display())]
     OverMap {
         /// The map or trace.
         path: PathBuf,
     },
-    /// A width or height that makes no picture.
+    /// A width or height outside the allowed range.
     #[error("a picture of {width} × {height} pixels is outside the range: {allowed} each way")]
     Size {
         /// Width in pixels.
@@ -33,7 +33,7 @@ pub enum PictureError {
         /// The range allowed, in words.
         allowed: String,
     },
-    /// A range of values that is none.
+    /// An invalid range of values.
     #[error("the range {low} to {high} is none: two finite numbers, the smaller one first")]
     Range {
         /// The first.
@@ -55,38 +55,38 @@ pub enum PictureError {
         /// One of the values.
         value: f64,
     },
-    /// Colours that do not go with the field.
+    /// A colour map that does not suit the field.
     #[error("{map} does not go with {field}, which {why}")]
     OtherColourMap {
         /// Name of the colour map.
         map: &'static str,
         /// Name of the field.
         field: &'static str,
-        /// What the field is like.
+        /// Why it does not suit.
         why: &'static str,
-        /// Names of those that go with it.
+        /// Names of those that do.
         fitting: String,
     },
-    /// An option that means nothing in this picture.
+    /// An option without a meaning in this picture.
     #[error("{option} has no meaning in this picture: {why}")]
     NotForThis {
         /// The option.
         option: &'static str,
-        /// What the picture is like.
+        /// What the picture shows instead.
         why: &'static str,
     },
-    /// A name that nobody asked for is taken.
+    /// A name that the user did not choose is taken.
     #[error("{} is there and {holds}", path.display())]
     OthersWork {
         /// The name.
         path: PathBuf,
-        /// What is there.
+        /// The contents of the file there.
         holds: String,
     },
-    /// No axis has more than one value left.
+    /// No axis has more than one value to show.
     #[error("there is nothing to draw: every axis of the map has one value or is held at one")]
     NothingToDraw,
-    /// The map does not hold the field.
+    /// The map lacks the field.
     #[error("the map does not hold {field}")]
     NoSuchField {
         /// The field.
@@ -94,13 +94,13 @@ pub enum PictureError {
         /// Names of the fields that it holds.
         held: String,
     },
-    /// The map holds no crossing curves in the plane asked for.
+    /// The map has no crossing curves in the requested plane.
     #[error("the map holds no crossing curves to draw: {why}")]
     NoCurves {
         /// Why not.
         why: &'static str,
     },
-    /// A value is asked for of a parameter that is no axis.
+    /// A value was given for a parameter that is no axis.
     #[error("{} is no axis of the map", parameter.name())]
     NotAnAxis {
         /// The parameter.
@@ -108,7 +108,7 @@ pub enum PictureError {
         /// Names of the axes.
         axes: String,
     },
-    /// A value is asked for outside an axis.
+    /// A value was given outside an axis.
     #[error("{} = {value} is outside the map: {from} to {to}", parameter.name())]
     OutsideAxis {
         /// The parameter.
@@ -120,16 +120,16 @@ pub enum PictureError {
         /// Largest value of the axis.
         to: f64,
     },
-    /// Several values are asked for along more than one axis.
+    /// Several values were given for more than one axis.
     #[error(
         "several values are asked for of both {} and {}; one of them may have several",
         first.name(),
         second.name()
     )]
     SeveralValues {
-        /// The one.
+        /// One axis.
         first: Quantity,
-        /// The other.
+        /// The other axis.
         second: Quantity,
     },
     /// The picture could not be rendered.

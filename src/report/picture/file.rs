@@ -1,4 +1,4 @@
-//! The file of a picture: its format by its name, and whose picture it may replace.
+//! The file of a picture: its format, from its name, and whether it may replace another picture.
 
 use std::fs;
 use std::io::BufReader;
@@ -11,11 +11,12 @@ use super::scene::Scene;
 use crate::report::visible::visible_line;
 use crate::store::{Output, StoreError};
 
-/// Cells read along an axis: more are not seen in a bitmap, and make a file of shapes unwieldy.
+/// The most cells per axis: more would not show in a bitmap, and would make files of shapes too
+/// large.
 const MOST_CELLS: usize = 1200;
 const MOST_SHAPES: usize = 320;
 
-/// A picture that is drawn, and not yet in its file.
+/// A picture that is drawn but not yet written to its file.
 #[derive(Debug)]
 #[must_use]
 pub struct Picture {
@@ -24,10 +25,10 @@ pub struct Picture {
     origin: Origin,
 }
 
-/// What a PNG picture tells of itself.
+/// The origin of a picture, as stored in a PNG file.
 #[derive(Debug)]
 pub(super) struct Origin {
-    /// Of what it is a picture, in one line.
+    /// What the picture shows, in one line.
     pub of: String,
     /// The name of the field that the sweep named for pictures; empty for none.
     pub named: &'static str,
@@ -59,7 +60,7 @@ impl Picture {
         &self.bytes
     }
 
-    /// Writes the file. It appears when it is complete; one that is there is replaced.
+    /// Writes the file. It appears only when it is complete, and replaces an existing one.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -74,8 +75,8 @@ impl Picture {
         Ok(output.commit()?)
     }
 
-    /// Writes the file under a name that the user did not choose. Only an earlier picture of the
-    /// same map and field is replaced, so no other work is lost.
+    /// Writes the file under a name that the user did not choose. It replaces only an earlier
+    /// picture of the same map and field, so that no other work is lost.
     ///
     /// # Errors
     /// When something else is there, or the file cannot be written.
@@ -90,7 +91,7 @@ impl Picture {
     }
 }
 
-/// What is at `path` if it is anything but a picture of this origin.
+/// A description of the file at `path`, unless it is a picture of this origin.
 fn others_work(path: &Path, origin: &str) -> Option<String> {
     let foreign = || Some("not by slipmap".to_owned());
     if path.symlink_metadata().is_err() {
@@ -103,33 +104,33 @@ fn others_work(path: &Path, origin: &str) -> Option<String> {
     }
 }
 
-/// The field that the sweep named for the PNG picture at `path` when it was drawn: an empty name
-/// where it named none; none where there is no picture of slipmap's.
+/// The field that the sweep named for the PNG picture at `path` when it was drawn; empty where it
+/// named none. None where there is no picture by slipmap.
 #[must_use]
 pub fn named_in(path: &Path) -> Option<String> {
     texts(path).map(|texts| texts.named)
 }
 
-/// The picture as a PNG file that tells its origin.
+/// The picture as a PNG file with its origin.
 fn png(scene: &Scene, origin: &Origin) -> Result<Vec<u8>, PictureError> {
     let texts = [SIGNATURE, (OF, origin.of.as_str()), (NAMED, origin.named)];
     render::png(scene, &texts)
 }
 
-/// The texts in a PNG file: who drew it, of what, and which field the sweep named.
+/// The texts in a PNG file: who drew it, what it shows, and which field the sweep named.
 const SIGNATURE: (&str, &str) = ("Software", "slipmap");
 const OF: &str = "Source";
 const NAMED: &str = "Comment";
 
-/// What the texts of a PNG file tell.
+/// The contents of these texts.
 struct Texts {
     of: String,
     named: String,
 }
 
-/// The texts of a picture of slipmap's; none where there is none at `path`.
+/// The texts of a picture by slipmap; none where there is none at `path`.
 fn texts(path: &Path) -> Option<Texts> {
-    // A pipe would be waited for.
+    // Opening a pipe would block.
     if !path.metadata().is_ok_and(|m| m.is_file()) {
         return None;
     }
@@ -154,7 +155,7 @@ pub fn is_name(path: &Path) -> bool {
     Format::of(path).is_ok()
 }
 
-/// What a picture is written as.
+/// The format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Png,
@@ -163,7 +164,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format that a file's name promises.
+    /// The format for the name of a file.
     pub(super) fn of(path: &Path) -> Result<Self, PictureError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {
@@ -176,7 +177,7 @@ impl Format {
         }
     }
 
-    /// How many cells along an axis are drawn at most.
+    /// The most cells per axis that are drawn.
     pub(super) fn most_cells(self) -> usize {
         match self {
             Self::Png => MOST_CELLS,

@@ -1,5 +1,5 @@
-//! Cells cut along the exact boundary of stability, where they are large enough to make a staircase
-//! of it: each place shows the nearest cell of its own side.
+//! Cuts cells along the exact boundary of stability, where they are large enough to look like a
+//! staircase: each place shows the nearest cell on its own side.
 
 use super::panels::Panel;
 use super::stable_area::intervals;
@@ -9,26 +9,26 @@ use crate::store::map_file::Plane;
 
 /// Cells smaller than this show no staircase, in units of the picture.
 const SMALL: f64 = 3.0;
-/// Parts of cells are about this large.
+/// Approximate size of the parts of a cell.
 const PART: f64 = 1.5;
-/// A cell has no more parts than this along an axis.
+/// The most parts of a cell along an axis.
 const MOST_PARTS: usize = 40;
-/// So near to the end of its reach, as a part of it, a curve is read: it ends before it.
+/// Relative distance from the end of an axis at which a curve is read there: its end is excluded.
 const END: f64 = 1e-9;
 
-/// Which places of a plane are stable: between its boundaries.
+/// The stable places of a plane, between its boundaries.
 pub(super) struct Sides<'a> {
     /// The curves that bound the stable region.
     pub pieces: &'a [&'a CurvePiece],
     /// The smallest and the largest value of the x axis.
     pub reach: (f64, f64),
-    /// Whether the plane is stable where no curve lies, by the value of its x axis.
+    /// Whether the plane is stable at a value of the x axis where no curve lies.
     pub without_crossing: &'a dyn Fn(f64) -> bool,
 }
 
 impl Sides<'_> {
-    /// For each place of the y axis whether it is stable, at a value of the x axis. Curves end with
-    /// the values of the map, cells half a step beyond: what holds at the end holds there, too.
+    /// Whether each place of the y axis is stable at a value of the x axis. Curves end at the last
+    /// value of the map, cells half a step beyond it; there the state at the end is continued.
     fn along(&self, panel: &Panel, x: f64, ys: &[f64]) -> Vec<bool> {
         let (from, to) = self.reach;
         let x = x.clamp(from, to - END * (to - from));
@@ -95,7 +95,7 @@ fn divided(edges: &[f64], parts: usize) -> Vec<f64> {
     edges.windows(2).flat_map(cell).collect()
 }
 
-/// The cells as the map has them, with the side on which the middle of each lies.
+/// The cells of the map, with the side on which each centre lies.
 struct Grid<'a> {
     panel: &'a Panel,
     plane: &'a Plane,
@@ -104,8 +104,8 @@ struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// Of a cell and its neighbours the one of this side whose middle is nearest to a place; the
-    /// cell itself where there is none.
+    /// Among a cell and its neighbours, the one on this side whose centre is nearest to a place;
+    /// the cell itself where there is none.
     fn nearest(&self, (row, column): (usize, usize), at: (f64, f64), side: bool) -> usize {
         let width = self.plane.columns.len();
         let own = row * width + column;
@@ -135,7 +135,7 @@ mod tests {
     use crate::report::picture::page::Area;
     use crate::report::picture::scale::Scale;
 
-    /// Three by three cells, stable above the line from one corner to the other.
+    /// Three by three cells, stable above a diagonal.
     #[test]
     fn cells_end_at_the_boundary() {
         let values = [0.5, 1.5, 2.5];

@@ -1,16 +1,15 @@
-//! The font of all pictures: DejaVu Sans, inside the program, so that a picture is the same on
+//! The font of all pictures: DejaVu Sans, part of the program, so that a picture is the same on
 //! every machine.
 
 use std::sync::OnceLock;
 
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
-/// A list of families as CSS writes it: where an SVG picture is opened without DejaVu Sans, its
-/// sister is taken.
+/// The families in CSS: where an SVG picture is opened without DejaVu Sans, a similar font is used.
 const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
-/// Texts are measured at this size, since the measure comes in whole pixels.
+/// The size at which texts are measured: widths come in whole pixels.
 const MEASURED_AT: f64 = 1000.0;
-/// Width of a letter relative to the font, where the font cannot be used.
+/// Width of a letter relative to the font size, if the font cannot be used.
 const TYPICAL_WIDTH: f64 = 0.55;
 
 /// The font at a size in pixels; `None` if it cannot be used.

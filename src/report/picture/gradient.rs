@@ -1,10 +1,10 @@
-//! Colour maps: perceptually uniform, and told apart by the colour-blind.
+//! Colour maps: perceptually uniform, and distinguishable by the colour-blind.
 
 use colorous::Gradient;
 
 use super::colour::Rgb;
 
-/// A colour map, named as matplotlib names it.
+/// A colour map, with its name in matplotlib.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColourMap {
     /// Dark purple, teal, yellow.
@@ -19,12 +19,12 @@ pub enum ColourMap {
     PuOr,
 }
 
-/// The part of a two-sided map on each side that is used: what is darker stands for values beyond
+/// The share of each side of a two-sided map that is used: darker colours stand for values beyond
 /// the ends.
 const USED: f64 = 0.8;
 
 impl ColourMap {
-    /// All: those for sizes, then those for values with two sides.
+    /// All maps: those for sizes, then the two-sided ones.
     pub const ALL: [Self; 5] = [
         Self::Viridis,
         Self::Cividis,
@@ -51,7 +51,7 @@ impl ColourMap {
         Self::ALL.into_iter().find(|map| map.name() == name)
     }
 
-    /// Whether it has a middle, for values with two sides.
+    /// Whether it is two-sided, with a colour for the middle.
     #[must_use]
     pub const fn has_two_sides(self) -> bool {
         matches!(self, Self::BrBG | Self::PuOr)
@@ -78,7 +78,7 @@ impl ColourMap {
     /// The colour at a part of the way, 0 to 1.
     pub(super) fn at(self, part: f64) -> Rgb {
         let part = match self {
-            // The crate has this one the other way round.
+            // The crate has this map in the opposite order.
             Self::PuOr => 1.0 - part,
             _ => part,
         };
@@ -86,7 +86,7 @@ impl ColourMap {
         Rgb(colour.r, colour.g, colour.b)
     }
 
-    /// The colour on one side of a map with two, −1 to 1: 0 is the middle.
+    /// The colour on one side of a two-sided map, −1 to 1; 0 is the middle.
     pub(super) fn on_side(self, strength: f64) -> Rgb {
         self.at(0.5 + 0.5 * USED * strength)
     }

@@ -1,15 +1,15 @@
-//! Cells that show no value: their colours, and the lines over them.
+//! Cells that show no value: their colours, and the hatching over them.
 
 use super::colour::{self, Rgb};
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Point, Scene};
 use crate::report::known::Gap;
 
-/// Distance of the lines from one another, and their width, in units of the picture.
+/// Distance between the lines, and their width, in units of the picture.
 const SPACING: f64 = 12.0;
 const WIDTH: f64 = 1.8;
 
-/// How lines run.
+/// Direction of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Run {
     Rising,
@@ -18,7 +18,7 @@ enum Run {
     Level,
 }
 
-/// The lines over cells with a gap; none where its colour says all.
+/// The lines over cells with a gap; none where the colour is enough.
 fn runs(gap: Gap) -> &'static [Run] {
     match gap {
         Gap::NotConverged => &[Run::Rising],
@@ -66,8 +66,8 @@ pub(super) fn draw(columns: &[f64], rows: &[f64], gaps: &[Option<Gap>], scene: &
     }
 }
 
-/// Draws the lines over a rectangle between two of its corners: at least one of each kind, however
-/// small it is.
+/// Draws the lines over a rectangle between two of its corners: at least one in each direction,
+/// however small it is.
 pub(super) fn fill(a: Point, b: Point, gap: Gap, scene: &mut Scene) {
     let (near, far) = ((a.0.min(b.0), a.1.min(b.1)), (a.0.max(b.0), a.1.max(b.1)));
     let u = scene.unit();
@@ -85,9 +85,9 @@ pub(super) fn fill(a: Point, b: Point, gap: Gap, scene: &mut Scene) {
     }
 }
 
-/// The lines of one kind in a rectangle. Those of neighbours meet.
+/// The lines in one direction in a rectangle. They meet those of neighbouring rectangles.
 fn lines(near: Point, far: Point, run: Run, spacing: f64) -> Vec<[Point; 2]> {
-    // What is the same along a line, and where it crosses the rectangle.
+    // The coordinate that is constant along a line, and its range over the rectangle.
     let (least, most) = match run {
         Run::Rising => (near.0 + near.1, far.0 + far.1),
         Run::Falling => (near.0 - far.1, far.0 - near.1),

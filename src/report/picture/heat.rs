@@ -25,13 +25,13 @@ use crate::store::map_file::MapCurve;
 use crate::sweep::Field;
 use crate::sweep::input::field::Storage;
 
-/// Space for the colours' meanings, to begin with.
+/// Initial space for the key.
 const GAP: f64 = 34.0;
-/// More than this many cells along an axis are not read to learn what holds where no curve lies.
+/// The most cells per axis that are read to learn the stability where no curve lies.
 const MOST_TOLD: usize = 600;
 
-/// Draws a heat map of `field` with at most as many cells each way in all panels together as stand
-/// beside the options, and the curves of `curves` that bound the stable region.
+/// Draws a heat map of `field`, with the curves of `curves` that bound the stable region. The
+/// number beside the options limits the cells each way in all panels together.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
@@ -105,12 +105,12 @@ fn bounding(curves: &[MapCurve]) -> impl Iterator<Item = &CurvePiece> + Clone {
     bounding.map(|curve| &curve.piece)
 }
 
-/// Whether the field is another one on the other side of the boundary of stability.
+/// Whether the field jumps at the boundary of stability.
 fn changes_at_boundary(field: Field) -> bool {
     field == Field::Regime || (field.of_sliding() && field.storage() == Storage::Count)
 }
 
-/// The cells of a panel, cut along the boundary that its curves are.
+/// The cells of a panel, cut along the boundary of stability.
 fn cut(
     map: &MapFile,
     (x, y): (usize, usize),
@@ -136,7 +136,7 @@ fn cut(
     Ok(fitted(panel, known, &sides, u))
 }
 
-/// Draws a curve; `turned` with its second parameter from left to right.
+/// Draws a curve; if `turned`, with its second parameter from left to right.
 fn draw_curve(
     panel: &Panel,
     (curve, turned): (&MapCurve, bool),

@@ -1,22 +1,22 @@
-//! A part of a mostly empty panel, drawn larger in its largest empty place.
+//! An enlarged part of a mostly empty panel, drawn in its largest empty place.
 //!
-//! Stable regions that are small in a panel may be the ones that matter, while most of the panel is
-//! blank. The rule follows from what is drawn: regions that are small in both directions are framed
-//! together, and drawn again where nothing else is, if that makes them several times larger.
+//! Stable regions that are small in a panel may be the important ones, while most of the panel is
+//! blank. Regions that are small in both directions are framed together, and drawn again in an
+//! empty place if that makes them several times larger.
 
 use super::page::{Area, SMALL};
 use super::panels::Panel;
 use super::scale::Scale;
 use super::stable_area::Region;
 
-/// Side of the squares in which a panel is looked at, in units of the picture.
+/// Side of the squares into which a panel is divided, in units of the picture.
 const SQUARE: f64 = 10.0;
-/// A region is small if it takes less than this part of a panel's width and of its height.
+/// A region is small if it takes less than this share of a panel's width and of its height.
 const SMALL_REGION: f64 = 0.25;
-/// Room around the small regions, as a part of what they take.
+/// Room around the small regions, relative to their size.
 const ROOM: f64 = 0.06;
-/// An inset is drawn if it makes the area of the regions larger by the first factor, and neither
-/// axis shorter than by the second.
+/// An inset is drawn if it enlarges the area of the regions at least by the first factor, and each
+/// axis at least by the second.
 const WORTH: f64 = 3.0;
 const LEAST: f64 = 1.0;
 /// Empty squares around an inset.
@@ -25,7 +25,7 @@ const APART: usize = 2;
 const LEFT: f64 = 2.4;
 const BELOW: f64 = 1.5;
 
-/// What is drawn larger, and where.
+/// The enlarged part, and its place.
 pub(super) struct Inset {
     /// The part of the panel.
     pub source: Area,
@@ -33,8 +33,8 @@ pub(super) struct Inset {
     pub panel: Panel,
 }
 
-/// The inset of a panel with these regions, if one is worth it. `taken`: places where nothing may
-/// be covered. `u`: the unit of the picture.
+/// The inset of a panel with these regions, if it is worthwhile. `taken`: places that must not be
+/// covered. `u`: the unit of the picture.
 pub(super) fn of(panel: &Panel, regions: &[Region], taken: &[Area], u: f64) -> Option<Inset> {
     let mut squares = Squares::of(panel.area, SQUARE * u);
     for &(x, low, high) in regions.iter().flatten() {
@@ -81,7 +81,7 @@ pub(super) fn of(panel: &Panel, regions: &[Region], taken: &[Area], u: f64) -> O
     })
 }
 
-/// The scale between two places of another one.
+/// The scale between two places of another scale.
 fn part_of(scale: Scale, part: impl Fn(f64) -> f64, from: f64, to: f64) -> Scale {
     let [from, to] = [from, to].map(|place| scale.value(part(place)));
     match scale.is_logarithmic() {
@@ -90,7 +90,7 @@ fn part_of(scale: Scale, part: impl Fn(f64) -> f64, from: f64, to: f64) -> Scale
     }
 }
 
-/// An area with room around it, within another one.
+/// An area with room around it, limited to another one.
 fn roomier(area: Area, outside: Area) -> Area {
     let (across, up) = (ROOM * area.width(), ROOM * area.height());
     Area {
@@ -101,7 +101,7 @@ fn roomier(area: Area, outside: Area) -> Area {
     }
 }
 
-/// A panel in squares: which of them hold something.
+/// A panel in squares, with the occupied ones.
 struct Squares {
     area: Area,
     side: f64,
@@ -133,7 +133,7 @@ impl Squares {
         (column.max(0.0) as usize).min(self.columns - 1)
     }
 
-    /// Takes what a line upright covers.
+    /// Marks what a vertical line covers.
     fn take(&mut self, x: f64, top: f64, bottom: f64) {
         let column = self.column(x);
         for row in self.row(top)..=self.row(bottom) {
@@ -161,7 +161,7 @@ impl Squares {
         }
     }
 
-    /// The area that frames all small regions; none where there are none, or where all are small.
+    /// The area that frames all small regions; none where there are none, or all are small.
     fn small_regions(&self) -> Option<Area> {
         let mut seen = vec![false; self.taken.len()];
         let mut all: Option<Area> = None;
@@ -189,7 +189,7 @@ impl Squares {
         all.filter(|_| others)
     }
 
-    /// The columns and rows that squares connected with one take.
+    /// The extent in columns and rows of the squares connected with one square.
     fn extent(&self, start: usize, seen: &mut [bool]) -> ((usize, usize), (usize, usize)) {
         let (mut columns, mut rows) = ((usize::MAX, 0), (usize::MAX, 0));
         let mut open = vec![start];
@@ -214,7 +214,7 @@ impl Squares {
     /// The largest rectangle of empty squares, without those at its edges.
     fn largest_empty(&self) -> Option<Area> {
         let mut best: Option<(usize, Area)> = None;
-        // How many squares are empty from each column's square upwards.
+        // The number of empty squares in each column, counted upwards from this row.
         let mut heights = vec![0usize; self.columns];
         for row in 0..self.rows {
             for (column, height) in heights.iter_mut().enumerate() {
@@ -286,7 +286,7 @@ mod tests {
         assert!(source.width() < 100.0 && source.height() < 140.0);
         assert!(area.right < LOBE.left && area.bottom < BAND.top && area.left > 0.0);
         assert!(area.width() > 5.0 * source.width());
-        // The scales are those of the part.
+        // The inset has the scales of its part.
         let left = -8.0 + source.left / 100.0;
         assert!((inset.panel.x.value(0.0) - left).abs() < 1e-9);
         let bottom = 6.0 - source.bottom / 100.0;

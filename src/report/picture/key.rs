@@ -1,5 +1,5 @@
-//! What the colours of a heat map mean: the colour of every value of a field, and the bar or list
-//! that says so.
+//! The key of a heat map: the colour of every value of a field, and the bar or list that explains
+//! it.
 
 use super::colour::{self, INK, Rgb, STABLE, UNSTABLE};
 use super::error::PictureError;
@@ -15,20 +15,20 @@ use crate::sweep::input::source::{OfRoots, Source};
 
 /// Width of boundary lines.
 pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
-/// What the colours of a field mean, in the panels and beside them.
+/// The meaning of a field's colours, in the panels and beside them.
 pub(super) struct Key {
     paint: Paint,
     /// Lines above the bar.
     heading: Vec<Rich>,
-    /// What stands below the bar, or alone where there is none.
+    /// The list below the bar, or alone where there is no bar.
     legend: Legend,
 }
 
 impl Key {
-    /// The key to all cells of `planes`; `curves`: boundaries are drawn as well.
+    /// The key for all cells of `planes`; `curves`: whether boundaries are drawn as well.
     ///
     /// # Errors
-    /// When the options do not go with the field or its values.
+    /// When the options do not suit the field or its values.
     pub(super) fn new(
         (field, unit): (Field, &str),
         planes: &[Known],
@@ -97,14 +97,14 @@ impl Key {
     }
 }
 
-/// Which kinds of missing values some planes have.
+/// Entries for the kinds of missing values in some planes.
 pub(super) fn of_gaps(field: Field, planes: &[Known]) -> Vec<(Swatch, Rich)> {
     let there = |gap: &Gap| planes.iter().any(|plane| plane.gaps.contains(&Some(*gap)));
     let entry = |gap: Gap| (Swatch::Gap(gap), Rich::plain(gap.words(field)));
     Gap::ALL.into_iter().filter(there).map(entry).collect()
 }
 
-/// The field's name and, where it has two sides, which of them is the stable one.
+/// The field's name and, if it has two sides, which of them is stable.
 fn heading(field: Field, unit: &str) -> Vec<Rich> {
     let mut lines = vec![field_name(field).and(&suffix(unit, " (", ")"))];
     let side = match field.source() {
@@ -139,7 +139,7 @@ fn counts(values: &[f64]) -> Legend {
     }
 }
 
-/// What a kind of a field means, where its name alone does not say.
+/// The meaning of a kind of a field, where its name alone is not clear.
 fn in_words(field: Field, name: &str) -> String {
     let words = match (field, name) {
         (Field::Regime, "stable") => "stable, no stick-slip",
@@ -150,7 +150,7 @@ fn in_words(field: Field, name: &str) -> String {
     words.into()
 }
 
-/// The kinds that there are, or the small counts.
+/// The kinds that occur, or the small counts.
 fn kinds(field: Field, values: &[f64]) -> Legend {
     let names = field.kinds().unwrap_or_default();
     let finite = || values.iter().copied().filter(|v| v.is_finite());
@@ -242,7 +242,7 @@ mod tests {
         );
     }
 
-    /// No two meanings share a colour, and none has one of the bar.
+    /// No two meanings share a colour, and none shares one with the bar.
     #[test]
     fn every_meaning_has_a_colour_of_its_own() {
         let far = [0.0, 0.01, 1.0, 2.0, 3.0, 1e6, f64::INFINITY];
@@ -277,7 +277,7 @@ mod tests {
             };
             let mut said: Vec<Rgb> = key.legend.entries.iter().map(|e| colour(&e.0)).collect();
             if let Some(scale) = key.paint.scale() {
-                // Colours of scales with two sides go with the square root.
+                // Colours of two-sided scales go with the square root.
                 let parts = (-128..=128).map(|i| f64::from(i) / 128.0);
                 let parts = parts.flat_map(|t| [0.5 + 0.5 * t, 0.5 + 0.5 * t * t.abs()]);
                 let bar = parts.map(|part| key.colour(scale.value(part)));
@@ -305,7 +305,7 @@ mod tests {
         assert_ne!(key.colour(0.0), key.colour(1e-9));
     }
 
-    /// What is not known counts for no scale, and is said in words.
+    /// Unknown values do not count for the scale, and are named in words.
     #[test]
     fn the_unknown_is_no_data() {
         let mut known = plane(&[1.0, 2.0, 1e9]);
@@ -321,7 +321,7 @@ mod tests {
         assert_eq!(said, [expected]);
     }
 
-    /// Teal is stable, whichever sign that is.
+    /// Teal is stable, whatever its sign.
     #[test]
     fn every_field_has_its_stable_colour() {
         let stable = colour::two_sided(ColourMap::BrBG, 1.0, 1.0);
@@ -332,7 +332,7 @@ mod tests {
         }
     }
 
-    /// Every field makes a key, even of cells that hold nothing.
+    /// Every field makes a key, even of cells without values.
     #[test]
     fn every_field_has_a_key() {
         for field in Field::ALL {

@@ -1,11 +1,11 @@
-//! Boundaries that are no pair of roots on the axis: dashed, and named in the legend.
+//! Boundaries other than pairs of roots on the axis: dashed, and named in the legend.
 
 use super::colour::Rgb;
 use super::legend::Swatch;
 use super::text::Rich;
 use crate::linear::curves::{CurveKind, CurvePiece};
 
-/// Dashes (length, gap) of a boundary; none where it is drawn through.
+/// Dashes (length, gap) of a boundary; none for a solid line.
 pub(super) fn dash(kind: CurveKind) -> Option<(f64, f64)> {
     match kind {
         CurveKind::Pair => None,
@@ -14,7 +14,7 @@ pub(super) fn dash(kind: CurveKind) -> Option<(f64, f64)> {
     }
 }
 
-/// Entries of a legend for the kinds that are there.
+/// Entries of a legend for the kinds that occur.
 pub(super) fn entries<'a>(
     pieces: &(impl Iterator<Item = &'a CurvePiece> + Clone),
     colour: Rgb,

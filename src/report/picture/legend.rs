@@ -1,4 +1,4 @@
-//! What colours mean, beside the panels.
+//! The meaning of colours, beside the panels.
 
 use super::colour::{INK, Rgb, SOFT_INK};
 use super::hatch;
@@ -18,17 +18,17 @@ const BAR_STEPS: usize = 256;
 /// How an entry is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Swatch {
-    /// A line of this width, over an area of that colour if there is one.
+    /// A line of this width, over an area with that colour if there is one.
     Line(Rgb, f64, Option<Rgb>),
-    /// A dashed line of this width, with (length, gap) of its dashes.
+    /// A dashed line of this width, with the (length, gap) of its dashes.
     Dashed(Rgb, f64, (f64, f64)),
     /// A box.
     Box(Rgb),
     /// A symbol.
     Symbol(Symbol),
-    /// Nothing: the words say all.
+    /// Nothing: words alone.
     None,
-    /// A box as cells with this gap are.
+    /// A box filled like cells with this gap.
     Gap(Gap),
     /// A dot of this diameter.
     Dot(Rgb, f64),
@@ -149,7 +149,8 @@ impl Bar<'_> {
         let (left, right) = (area.left, area.left + BAR_WIDTH * u);
         let height = area.bottom - top;
         let place = |part: f64| area.bottom - height * part;
-        // From the top, each step down to the foot under the next, so that no gap shows.
+        // Each step reaches from the top to the bottom of the bar, under the next one, so that no
+        // gap shows.
         for i in (0..BAR_STEPS).rev() {
             let [low, high] = [i, i + 1].map(|i| i as f64 / BAR_STEPS as f64);
             let colour = (self.colour)(self.scale.value(0.5 * (low + high)));

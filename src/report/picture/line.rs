@@ -1,4 +1,4 @@
-//! Fields along the one axis that is left.
+//! Fields along the only remaining axis.
 
 use super::areas;
 use super::choice;
@@ -27,10 +27,10 @@ use crate::sweep::input::field::Storage;
 const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).
 const DASH: (f64, f64) = (9.0, 7.0);
-/// Half the length of a line of one point.
+/// Half the length of the line that stands for a single point.
 const LONE: f64 = 5.0;
 
-/// The cells along one line, and how they are drawn.
+/// The cells along one line, with their style.
 struct Graph {
     field: Field,
     at: Vec<f64>,
@@ -39,13 +39,13 @@ struct Graph {
     gaps: Vec<Option<Gap>>,
     swatch: Swatch,
     colour: Rgb,
-    /// What tells the line from the others.
+    /// What distinguishes the line from the others.
     name: Rich,
 }
 
-/// Draws `fields` along the axis `view.x` at no more than so many cells as stand beside the
-/// options: a single one at every panel's values of the other axes, several ones, of the same
-/// unit, at those of the first.
+/// Draws `fields` along the axis `view.x`. A single field is drawn for the other axes' values of
+/// every panel; several ones, with the same unit, only for those of the first panel. The number
+/// beside the options limits the cells.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
@@ -71,7 +71,7 @@ pub(super) fn draw(
     let u = scene.unit();
     let asked = options.range.is_some();
     let mut legend = legend(map, view, &lines);
-    // What lies beyond the scale does not depend on where the panel is.
+    // What lies beyond the scale does not depend on the panel's place.
     let anywhere = Panel {
         area: body,
         x: scales.0,
@@ -109,7 +109,7 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Draws the lines, above where 0 is.
+/// Draws the lines, with a line at 0 below them.
 fn draw_lines(panel: &Panel, lines: &[Graph], asked: bool, scene: &mut Scene) {
     let numbers = lines.iter().all(|line| line.field.kinds().is_none());
     if numbers && panel.y.holds(0.0) {
@@ -128,8 +128,8 @@ fn draw_lines(panel: &Panel, lines: &[Graph], asked: bool, scene: &mut Scene) {
     name_areas(panel, lines, scene);
 }
 
-/// Draws the values without a place on the scale, whose ends may be `asked` for; gives what that
-/// means.
+/// Draws the values beyond the scale, whose ends may be `asked` for; returns entries for the
+/// legend.
 fn draw_off_scale(
     panel: &Panel,
     lines: &[Graph],
@@ -148,7 +148,7 @@ fn draw_off_scale(
     off_scale::draw(panel, &along.collect::<Vec<_>>(), asked, scene)
 }
 
-/// Names what lies on either side of the critical velocity of a short delay, and beyond the
+/// Names the areas on either side of the critical velocity of a short delay, and the one beyond
 /// lift-off.
 fn name_areas(panel: &Panel, lines: &[Graph], scene: &mut Scene) {
     let of = |field: Field| {
@@ -220,7 +220,7 @@ fn read_lines(
     Ok(lines)
 }
 
-/// Approximations are dashed.
+/// The swatch of a field: dashed for approximations.
 fn swatch(field: Field, colour: Rgb) -> Swatch {
     match field {
         Field::VcWeakControl | Field::VcStrongControl => Swatch::Dashed(colour, WIDTH, DASH),
@@ -249,7 +249,7 @@ fn finite(lines: &[Graph]) -> impl Iterator<Item = f64> {
 fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let u = scene.unit();
     for mut stretch in stretches(panel, line) {
-        // A value alone between others that are not there is a point.
+        // A single value between missing ones is drawn as a point.
         if let [(x, y)] = stretch[..] {
             stretch = vec![(x - LONE * u, y), (x + LONE * u, y)];
         }
@@ -265,8 +265,8 @@ fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
     }
 }
 
-/// The line in pixels, broken where there is no value on the scale: steps for counts, straight
-/// lines otherwise.
+/// The line in pixels, broken where there is no value on the scale: as steps for counts, as
+/// straight lines otherwise.
 fn stretches(panel: &Panel, line: &Graph) -> Vec<Vec<Point>> {
     let edges = panel.x.filling_edges(&line.at);
     let mut done = Vec::new();
@@ -312,7 +312,7 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     if lines.len() > 1 {
         legend.entries = lines.iter().map(|l| (l.swatch, l.name.clone())).collect();
     } else if map.stability_field().is_some() {
-        // A regime is called stable where stick-slip is none as well.
+        // A regime is called stable only where stick-slip is absent as well.
         let stable = Rich::plain("linearly stable");
         legend.entries = vec![(Swatch::Box(STABLE_TINT), stable)];
     }
@@ -320,7 +320,7 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     legend
 }
 
-/// What of a single line is no value, or what several ones are broken for.
+/// Adds entries for the gaps of a single line, or one for the breaks of several lines.
 fn add_gaps(legend: &mut Legend, lines: &[Graph]) {
     for gap in Gap::ALL {
         let mut there = lines.iter().filter(|line| line.gaps.contains(&Some(gap)));
@@ -341,7 +341,7 @@ mod tests {
     use crate::report::picture::scale::Scale;
     use crate::report::picture::scene::Mark;
 
-    /// A number that is not known is no point of a line.
+    /// A number that is not known is no point of the line.
     #[test]
     fn a_line_is_broken_where_it_is_not_known() {
         let line = Graph {

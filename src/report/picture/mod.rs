@@ -5,32 +5,32 @@
 //!     → [scene] marks in pixels → [render] PNG or SVG → [pdf]
 //! ```
 //!
-//! - `options`, `choice`: what is asked for, and what is shown where nothing is; `file`: formats
-//! - `key`, `paint`: what colours of a heat map mean, and how values become colours; `hatch`: cells
-//!   that show none; `fitted`: cells along an exact boundary
-//! - `page`, `panels`, `inset`, `legend`: where things stand; `scale`, `value_scale`, `ticks`: from
-//!   values to places; `clip`, `areas`, `off_scale`: lines at edges, names and values beyond
+//! - `options`, `choice`: what is requested, and what is shown by default; `file`: formats
+//! - `key`, `paint`: the meaning of colours in a heat map, and the colours of values; `hatch`:
+//!   cells without a value; `fitted`: cells along an exact boundary
+//! - `page`, `panels`, `inset`, `legend`: layout; `scale`, `value_scale`, `ticks`: from values to
+//!   places; `clip`, `areas`, `off_scale`: lines at edges, names and values beyond
 //! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
 //!   them, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `roots`: the characteristic roots of a point, and its line of delays
-//! - `speed`: delays that are periods, by their speed
+//! - `speed`: delays that are periods, shown as speeds
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
-//! - `colour`, `gradient`, `text`, `font`: how things look
-//! - `boundaries`: the boundaries of stability in one plane, a colour for each value of the axis
-//!   outside it
+//! - `colour`, `gradient`, `text`, `font`: styles
+//! - `boundaries`: the boundaries of stability in one plane, with a colour for each value of the
+//!   axis outside it
 //! - `error`: why a picture could not be drawn
 //! - `heat`: heat maps of a field
-//! - `kinds`: boundaries that are no pair of roots on the axis
-//! - `line`: fields along the one axis that is left: one at several values of another axis, or
+//! - `kinds`: boundaries other than pairs of roots on the axis
+//! - `line`: fields along the only remaining axis: one at several values of another axis, or
 //!   several together
 //! - `pdf`: from SVG to PDF; the only file that imports svg2pdf
-//! - `rectangles`: cells as few rectangles
+//! - `rectangles`: joins cells into few rectangles
 //! - `render`: from a scene to the bytes of a PNG or SVG file
-//! - `scene`: what is on a picture, in pixels from its upper left corner, apart from how it is
-//!   rendered
+//! - `scene`: the contents of a picture, in pixels from its upper left corner, independent of
+//!   rendering
 //! - `told_apart`: tests: colours under three kinds of colour blindness
-//! - `view`: what of a map is shown
+//! - `view`: the part of a map that is shown
 
 mod areas;
 mod boundaries;
@@ -93,9 +93,9 @@ pub use roots::PointPicture;
 use scene::Scene;
 use view::{MOST_PANELS, View};
 
-/// Draws a map for the file `path`, PNG, SVG or PDF by its extension, and changes no file. The same
-/// map and options give the same bytes. Where only one axis has more than one value the picture is
-/// a line, whatever the kind.
+/// Draws a map for the file `path`, PNG, SVG or PDF by its extension, without writing any file. The
+/// same map and options give the same bytes. If only one axis has more than one value, the picture
+/// is a line, whatever the kind.
 ///
 /// # Errors
 /// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
@@ -112,11 +112,11 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 }
 
 /// Draws the trace of the file `of` for the file `path`, as [`draw`] does a map: velocities,
-/// elongation and the quantity that is controlled over time, and the velocity over the elongation.
-/// Of the options the size and the title count; the title is the case's by default.
+/// elongation and the controlled quantity over time, and the velocity over the elongation. Only the
+/// size and the title among the options are used; the default title is the case's.
 ///
 /// # Errors
-/// When the name of the file is no picture's, or options have no meaning for a trace.
+/// When the name of the file is not that of a picture, or options have no meaning for a trace.
 pub fn draw_trace(
     (spec, trace): (&CaseSpec, &Trace),
     of: &Path,
@@ -153,7 +153,7 @@ pub fn draw_trace_file(
 /// complex plane, and the number of unstable ones and the stable delays of its line.
 ///
 /// # Errors
-/// When the name of the file is no picture's.
+/// When the name of the file is not that of a picture.
 pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
     let mut scene = Scene::new(PictureOptions::default().size);
@@ -171,7 +171,7 @@ fn named(path: &Path) -> String {
     visible_line(&name)
 }
 
-/// The picture is another file than what it shows.
+/// Checks that the picture is not the file that it shows.
 fn apart(shown: &Path, picture: &Path) -> Result<(), PictureError> {
     let same = match (shown.canonicalize(), picture.canonicalize()) {
         (Ok(shown), Ok(picture)) => shown == picture,

@@ -1,5 +1,5 @@
-//! Values along a line that have no place on its scale: those beyond its ends, infinite ones and,
-//! on a logarithmic scale, zeros. They are bars at the edge of the panel.
+//! Values along a line that have no place on its scale: values beyond its ends, infinite ones and,
+//! on a logarithmic scale, zeros. They are drawn as bars at the edge of the panel.
 
 use super::colour::Rgb;
 use super::legend::Swatch;
@@ -33,7 +33,7 @@ impl Off {
         Self::Below,
     ];
 
-    /// The kind of a value that is off the scale; none for one within it.
+    /// The kind of a value off the scale; none for a value on it.
     fn of(value: f64, panel: &Panel) -> Option<Self> {
         match value {
             f64::INFINITY => Some(Self::Infinite),
@@ -74,7 +74,7 @@ pub(super) struct Along<'a> {
     pub field: Field,
     pub values: &'a [f64],
     pub gaps: &'a [Option<Gap>],
-    /// The edges of its cells, one more than there are.
+    /// The edges of its cells, one more than there are cells.
     pub edges: &'a [f64],
     pub colour: Rgb,
 }
@@ -88,9 +88,9 @@ impl Along<'_> {
     }
 }
 
-/// Draws the bars of all lines, those of one edge above one another; gives what they mean. A value
-/// beyond the scale has a bar where the ends of the scale are `asked` for. By default all values
-/// are within it, but those that fall to 0 and errors too large to matter.
+/// Draws the bars of all lines, stacked at each edge; returns entries for the legend. Values beyond
+/// the scale have bars only if the ends of the scale are `asked` for. By default the scale has all
+/// values except those that fall to 0 and errors too large to matter.
 pub(super) fn draw(
     panel: &Panel,
     lines: &[Along],

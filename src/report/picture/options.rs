@@ -1,4 +1,4 @@
-//! How a picture is asked for.
+//! The options of a picture.
 
 use std::ops::RangeInclusive;
 
@@ -7,10 +7,10 @@ use super::gradient::ColourMap;
 use crate::sweep::Field;
 use crate::sweep::input::quantity::Quantity;
 
-/// Widths and heights that make a picture, in pixels.
+/// Allowed widths and heights of a picture, in pixels.
 const SIZES: RangeInclusive<u32> = 300..=5000;
 
-/// What kind of picture.
+/// The kind of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureKind {
     /// The boundaries of stability as curves, one colour per value of the axis outside their plane,
@@ -20,14 +20,14 @@ pub enum PictureKind {
     Heat,
 }
 
-/// What names the field that pictures of a map show unasked: the `picture` key of a sweep file.
+/// Where the default field of pictures of a map comes from: the `picture` key of a sweep file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
-    /// That of the sweep in the map.
+    /// The sweep in the map.
     InMap,
-    /// This one, in a sweep file that may have changed since.
+    /// A sweep file that may have changed since, which names this field.
     As(Field),
-    /// Nothing: that file has no such key.
+    /// A sweep file without this key.
     Nothing,
 }
 
@@ -37,35 +37,35 @@ impl From<Option<Field>> for Named {
     }
 }
 
-/// How a map is drawn.
+/// The options for drawing a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the one that the sweep names for pictures, else the first
-    /// held of the regime of v0, the velocity above which sliding is smooth, the critical
+    /// The field to show. By default the one that the sweep names for pictures, else the first that
+    /// the map has of: the regime of v0, the velocity above which sliding is smooth, the critical
     /// velocity, the outcome, the spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
-    /// What names the field of pictures where `field` does not.
+    /// Where the field comes from if `field` is none.
     pub named: Named,
-    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis
-    /// outside their plane, holds none of the first five and no field is asked for or named,
+    /// The kind. By default boundaries, if the map has them for 2 to 12 values of one axis outside
+    /// their plane, has none of the first five fields above, and no field is requested or named;
     /// otherwise a heat map.
     pub kind: Option<PictureKind>,
-    /// Values at which axes are held: the nearest on the axis. Several for one axis make as many
-    /// panels or colours.
+    /// Values at which axes are held, each replaced by the nearest one on its axis. Several values
+    /// of one axis make several panels or colours.
     pub at: Vec<(Quantity, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
-    /// The title; by default the sweep's in pictures of the field that it shows, else what the
-    /// field is.
+    /// The title. By default the sweep's, for pictures of the field that it shows, else the meaning
+    /// of the field.
     pub title: Option<String>,
-    /// The ends (low, high) of the scale of values, in the units of the map; by default they
-    /// follow from the values. What lies beyond has colours of its own.
+    /// The ends (low, high) of the scale of values, in the units of the map. By default they follow
+    /// from the values. Values beyond them have their own colours.
     pub range: Option<(f64, f64)>,
-    /// The colours of values; by default those that the field goes with.
+    /// The colours of values; by default those of the field.
     pub colour_map: Option<ColourMap>,
-    /// The scale of values is logarithmic, whatever it would be by default.
+    /// Whether the scale of values is logarithmic in any case.
     pub log: bool,
-    /// What colours and lines mean is left out.
+    /// Whether the explanation of colours and lines is left out.
     pub no_legend: bool,
 }
 
@@ -87,7 +87,7 @@ impl Default for PictureOptions {
 }
 
 impl PictureOptions {
-    /// Refuses what makes no picture of any map.
+    /// Refuses options that suit no map.
     pub(super) fn check(&self) -> Result<(), PictureError> {
         let (width, height) = self.size;
         if !(SIZES.contains(&width) && SIZES.contains(&height)) {
@@ -106,7 +106,7 @@ impl PictureOptions {
         }
     }
 
-    /// Refuses options about a scale of values for pictures that have no such scale.
+    /// Refuses options about a scale of values, for pictures without such a scale.
     pub(super) fn about_values(&self, why: &'static str) -> Result<(), PictureError> {
         let asked = [
             (self.range.is_some(), "--range"),
@@ -119,7 +119,7 @@ impl PictureOptions {
         }
     }
 
-    /// Which part of a map is asked for, apart from how it looks, in words.
+    /// The requested part of a map, apart from its style, in words.
     pub(super) fn asked(&self) -> String {
         let field = self.field.map(|field| format!(" field={}", field.name()));
         let kind = self.kind.map(|kind| match kind {

@@ -1,4 +1,4 @@
-//! The sheet: title, notes, and the area that is left.
+//! The page: title, notes, and the remaining area.
 
 use super::colour::{INK, SOFT_INK};
 use super::scene::{Align, Scene};
@@ -41,7 +41,7 @@ impl Area {
         self.bottom - self.top
     }
 
-    /// Cuts a column of this width off the right, with a gap; gives the column.
+    /// Cuts a column of this width off the right, with a gap; returns the column.
     pub(super) fn cut_right(&mut self, width: f64, gap: f64) -> Self {
         let column = Self {
             left: self.right - width,
@@ -52,7 +52,7 @@ impl Area {
     }
 }
 
-/// Writes title and notes; gives the area left for the rest.
+/// Writes title and notes; returns the remaining area.
 pub(super) fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
     let u = scene.unit();
     let (width, height) = (f64::from(scene.size.0), f64::from(scene.size.1));
@@ -83,8 +83,8 @@ pub(super) fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
     }
 }
 
-/// A text in lines of at most `width`; what does not fit into the lines allowed ends in an
-/// ellipsis.
+/// A text in lines of at most `width`. If it does not fit into the allowed number of lines, it ends
+/// in an ellipsis.
 fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| Rich::plain(line).width(size) <= width;
     let mut lines: Vec<String> = Vec::new();
@@ -112,7 +112,7 @@ fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// Notes one after the other, in as many lines as they need, within reason.
+/// The notes in as many lines as they need, up to a limit.
 fn note_lines(notes: &[Rich], size: f64, width: f64) -> Vec<Rich> {
     let mut lines: Vec<Rich> = Vec::new();
     for note in notes {

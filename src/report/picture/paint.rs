@@ -1,4 +1,4 @@
-//! How the values of a field become colours.
+//! Colours for the values of a field.
 
 use super::colour::{self, ABOVE, BELOW, INFINITE, MINUS_INFINITE, NO_VALUE, Rgb, ZERO};
 use super::error::PictureError;
@@ -10,39 +10,38 @@ use super::text::{Rich, decimal_exponent, number};
 use crate::sweep::Field;
 use crate::sweep::input::field::{Spread, Storage};
 
-/// The part of all slopes and further roots that the colours tell apart. Near double roots some
-/// slopes are beyond any scale, and as the delay vanishes all roots but the rightmost go to −∞.
+/// The share of the values of slopes and further roots that lie on the scale. Near double roots
+/// some slopes exceed any scale, and as the delay vanishes all roots but the rightmost go to −∞.
 const TOLD_APART: f64 = 0.96;
-/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than
-/// any power.
+/// Decades of a velocity that colours, and lines, show: it falls to zero faster than any power.
 pub(super) const DECADES: i32 = 5;
-/// The longest relaxation time that has a colour of its own, in units of the shortest one.
+/// The longest relaxation time on the scale, in units of the shortest one.
 const LONGEST_RELAXATION: f64 = 100.0;
 
-/// The largest ratio of velocities, or of stick times, that are told apart.
+/// The largest ratio of velocities, or of stick times, on the scale.
 const LARGEST_RATIO: f64 = 1000.0;
 
-/// A largest velocity no more than this many times those told apart is within the scale.
+/// The scale extends to the largest velocity if that is at most this many times its usual end.
 const FEW_TIMES: f64 = 5.0;
-/// Ends of a scale are rounded.
+/// Relative rounding of the ends of a scale.
 const ROUNDED: f64 = 1e-9;
 
-/// How values become colours.
+/// The colours of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Paint {
     /// A colour for each number of unstable roots.
     Counts,
     /// A colour for each kind of this field, or each of its small counts.
     Kinds(Field),
-    /// Two colours that meet at zero; `stable` is the sign of the values on the stable side.
+    /// Two colours that meet at zero; `stable` is the sign of values on the stable side.
     TwoSided {
         map: ColourMap,
         low: f64,
         high: f64,
         stable: f64,
     },
-    /// From dark to light along a scale; beyond its ends, at infinity and, where it has none or
-    /// `zero` means something of its own, at 0 there are other colours.
+    /// From dark to light along a scale. Values beyond its ends, infinite values and zeros (if the
+    /// scale lacks them, or `zero` gives them a meaning) have other colours.
     Sized {
         map: ColourMap,
         scale: Scale,
@@ -51,10 +50,10 @@ pub(super) enum Paint {
 }
 
 impl Paint {
-    /// The colours of a field that has these values, as they are asked for.
+    /// The colours of a field with these values, as requested.
     ///
     /// # Errors
-    /// When an option does not fit the field or its values.
+    /// When an option does not suit the field or its values.
     pub(super) fn of(
         field: Field,
         values: &[f64],
@@ -112,7 +111,7 @@ impl Paint {
         }
     }
 
-    /// The same between two values.
+    /// The same colours between two values.
     fn within(self, (low, high): (f64, f64)) -> Result<Self, PictureError> {
         match self {
             Self::Counts | Self::Kinds(_) => Err(no_scale("--range")),
@@ -239,7 +238,7 @@ impl Paint {
         }
     }
 
-    /// The scale of the bar; none where a list says everything.
+    /// The scale of the bar; none where a list is enough.
     pub(super) fn scale(&self) -> Option<Scale> {
         match *self {
             Self::Counts | Self::Kinds(_) => None,
@@ -248,7 +247,7 @@ impl Paint {
         }
     }
 
-    /// What is beyond the ends of the bar.
+    /// Entries for values beyond the ends of the bar.
     pub(super) fn beyond(&self, field: Field, values: &[f64]) -> Vec<(Swatch, Rich)> {
         let mut entries = Vec::new();
         let mut entry = |value: f64, text: String| {
@@ -307,7 +306,7 @@ fn no_scale(option: &'static str) -> PictureError {
     }
 }
 
-/// A logarithmic scale over all `values`. They may include 0 if it has a colour of its own.
+/// A logarithmic scale over all `values`. They may include 0 if `zero` has a colour of its own.
 ///
 /// # Errors
 /// When a value has no logarithm.
@@ -331,7 +330,7 @@ pub(super) fn logarithmic(field: Field, zero: bool, values: &[f64]) -> Result<Sc
     })
 }
 
-/// What a velocity of 0 means.
+/// The meaning of a velocity of 0.
 pub(super) fn at_zero(field: Field) -> &'static str {
     match field {
         Field::Vc | Field::VcUpper | Field::VcOverVtilde => ": stick-slip never lasts",
@@ -340,9 +339,9 @@ pub(super) fn at_zero(field: Field) -> &'static str {
     }
 }
 
-/// The range of colours: the largest finite value of a stable cell, stable being positive, since
-/// far outside the stable region the distance to it matters less; but not so small that most of the
-/// others lie beyond. 1 where there is no value.
+/// The range of two-sided colours: the largest value of a stable cell, where stable is positive.
+/// Far outside the stable region the distance to it matters less. At least half of the largest
+/// magnitude, so that most other values stay in range; 1 where there is no value.
 fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
     let (mut stable, mut largest) = (0.0, 0.0);
     for value in values {
@@ -352,7 +351,7 @@ fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
     rounded_up(f64::max(stable, 0.5 * largest))
 }
 
-/// The value below which `part` of the values lie; 0 where there are none.
+/// The value below which the share `part` of the values lies; 0 where there are none.
 fn quantile(values: impl Iterator<Item = f64>, part: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     let place = (part * values.len() as f64) as usize;

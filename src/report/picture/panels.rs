@@ -1,4 +1,4 @@
-//! Panels side by side with common axes: one for a single plane, more for small multiples.
+//! Panels side by side with common axes: one for a single plane, several for small multiples.
 
 use super::colour::{GRID, INK};
 use super::page::{Area, LABEL, SMALL};
@@ -10,20 +10,20 @@ use super::ticks::Tick;
 const TICK: f64 = 8.0;
 const MINOR_TICK: f64 = 4.0;
 const FRAME_WIDTH: f64 = 1.6;
-/// Width over height that panels should have.
+/// Desired ratio of width to height of a panel.
 const SHAPE: f64 = 1.25;
-/// What an empty place counts, as a part of all panels, against the logarithm of their shape.
+/// Weight of empty places, as a share of all panels, against the logarithm of the panels' shape.
 const EMPTY: f64 = 6.0;
 const MOST_TICKS: usize = 10;
 
-/// One panel: where it is, and its scales.
+/// One panel: its place and its scales.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Panel {
-    /// Inside the frame.
+    /// The area inside the frame.
     pub area: Area,
-    /// From left to right.
+    /// The scale from left to right.
     pub x: Scale,
-    /// From bottom to top.
+    /// The scale from bottom to top.
     pub y: Scale,
 }
 
@@ -44,7 +44,7 @@ impl Panel {
     }
 }
 
-/// How a panel looks, with ticks from left to right and from bottom to top.
+/// Drawing of a panel, with ticks from left to right and from bottom to top.
 impl Panel {
     /// Draws a line at every tick with a label.
     pub(super) fn draw_grid(&self, scene: &mut Scene, across: &[Tick], up: &[Tick]) {
@@ -72,7 +72,7 @@ impl Panel {
         scene.outline((area.left, area.top), (area.right, area.bottom), INK, width);
     }
 
-    /// Draws ticks below the panel, with their labels or without.
+    /// Draws ticks below the panel, with or without labels.
     pub(super) fn draw_x_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
         let u = scene.unit();
         let bottom = self.area.bottom;
@@ -87,7 +87,7 @@ impl Panel {
         }
     }
 
-    /// Draws ticks to the left of the panel, with their labels or without.
+    /// Draws ticks to the left of the panel, with or without labels.
     pub(super) fn draw_y_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
         let u = scene.unit();
         let left = self.area.left;
@@ -103,7 +103,7 @@ impl Panel {
     }
 }
 
-/// What is written at the panels.
+/// The texts at the panels.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Words {
     /// Below all panels.
@@ -112,12 +112,12 @@ pub(super) struct Words {
     pub y: Rich,
     /// Above each panel.
     pub headings: Vec<Option<Rich>>,
-    /// What stands in the place of the numbers 0, 1, … to the left; numbers where it is empty.
+    /// Words that replace the numbers 0, 1, … to the left; empty for numbers.
     pub names: Vec<&'static str>,
 }
 
 impl Words {
-    /// Those of two axes with numbers.
+    /// The texts of two axes with numbers.
     pub(super) fn of(x: Rich, y: Rich, headings: Vec<Option<Rich>>) -> Self {
         Self {
             x,
@@ -157,9 +157,9 @@ impl Panels {
         };
         let labels = y_ticks.iter().filter_map(|t| t.label.as_deref());
         let left = outside.left + left_margin(labels, u);
-        // Half of the last label of the x axis stands out to the right.
+        // Half of the last label of the x axis extends to the right.
         let end = 1.1 * SMALL * u;
-        // Beside it stand the last label of one panel and the first of the next.
+        // The last label of one panel stands beside the first one of the next.
         let x_ticks = x.ticks(MOST_TICKS);
         let labels = x_ticks.iter().filter_map(|t| t.label.as_deref());
         let room = labels
@@ -199,7 +199,7 @@ impl Panels {
         }
     }
 
-    /// Draws frames, ticks and all that is written, after the contents.
+    /// Draws frames, ticks and texts, after the contents.
     pub(super) fn draw_axes(&self, scene: &mut Scene) {
         let u = scene.unit();
         for (i, panel) in self.list.iter().enumerate() {
@@ -238,7 +238,7 @@ impl Panels {
     }
 }
 
-/// The middle nearest to `middle` at which this width stays between two edges.
+/// The centre nearest to `middle` with which this width stays between two edges.
 pub(super) fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
     middle.min(to - 0.5 * width).max(from + 0.5 * width)
 }
@@ -251,7 +251,7 @@ fn length(tick: &Tick) -> f64 {
     }
 }
 
-/// Columns and rows for `n` panels in an area of this width over height.
+/// Columns and rows for `n` panels in an area with this ratio of width to height.
 fn shape(n: usize, area: f64) -> (usize, usize) {
     let mismatch = |columns: usize| {
         let rows = n.div_ceil(columns);
@@ -265,19 +265,19 @@ fn shape(n: usize, area: f64) -> (usize, usize) {
     (columns, n.div_ceil(columns))
 }
 
-/// Room for the title of an axis, these labels and ticks to the left of a panel.
+/// Room to the left of a panel for the title of an axis, these labels and ticks.
 pub(super) fn left_margin<'a>(labels: impl Iterator<Item = &'a str>, u: f64) -> f64 {
     let widths = labels.map(|l| Rich::plain(l).width(SMALL * u));
     1.4 * LABEL * u + widths.fold(0.0, f64::max) + (TICK + 8.0) * u
 }
 
-/// As many ticks as fit beside one another over a width.
+/// As many ticks as fit side by side in a width.
 pub(super) fn fitting_across(scale: &Scale, width: f64, u: f64) -> Vec<Tick> {
     let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
     fitting(scale, label_width, width)
 }
 
-/// As many ticks as fit above one another over a height.
+/// As many ticks as fit above one another in a height.
 pub(super) fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
     fitting(scale, |_| 1.7 * SMALL * u, height)
 }
@@ -291,7 +291,7 @@ fn named(scale: &Scale, names: &[&str]) -> Vec<Tick> {
     ticks.filter(|tick| scale.holds(tick.value)).collect()
 }
 
-/// As many ticks as have room for labels of the sizes that `size` gives.
+/// As many ticks as there is room for labels of these sizes.
 fn fitting(scale: &Scale, size: impl Fn(&str) -> f64, room: f64) -> Vec<Tick> {
     let fits = |ticks: &[Tick]| {
         let labelled: Vec<(f64, f64)> = ticks
@@ -319,7 +319,7 @@ mod tests {
             assert!(columns * rows >= n && columns * (rows - 1) < n);
         }
         assert_eq!(shape(1, 1.4), (1, 1));
-        // Three beside one another, not three of four.
+        // Three side by side, not three of four.
         assert_eq!(shape(3, 1.4), (3, 1));
         assert_eq!(shape(9, 1.3), (3, 3));
         assert_eq!(shape(12, 1.4), (4, 3));

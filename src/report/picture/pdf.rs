@@ -7,7 +7,7 @@ use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::error::PictureError;
 
-/// Points of the page in a pixel of the picture: 1600 pixels are 7 inches, two columns of print.
+/// Points of the page per pixel of the picture: 1600 pixels are 7 inches, two columns of print.
 const POINTS: f32 = 7.0 * 72.0 / 1600.0;
 
 /// The picture as a PDF file.

@@ -1,20 +1,20 @@
-//! Cells as few rectangles.
+//! Joins cells into few rectangles.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Neighbouring cells that are alike.
+/// Neighbouring cells with the same key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Rectangle<K> {
-    /// The first row, and the one behind the last.
+    /// The first row, and the one after the last.
     pub rows: (usize, usize),
-    /// The first column, and the one behind the last.
+    /// The first column, and the one after the last.
     pub columns: (usize, usize),
-    /// What they have in common.
+    /// Their common key.
     pub key: K,
 }
 
-/// The cells of rows of this width in rectangles: neighbours that are alike are joined along rows,
+/// Joins the cells of rows of this width into rectangles: neighbours with equal keys along rows,
 /// then equal stretches of rows.
 pub(super) fn rectangles<K: Copy + Ord + Hash>(keys: &[K], width: usize) -> Vec<Rectangle<K>> {
     let width = width.max(1);
@@ -37,7 +37,7 @@ pub(super) fn rectangles<K: Copy + Ord + Hash>(keys: &[K], width: usize) -> Vec<
         open = here;
     }
     close(&mut open, keys.len() / width);
-    // The order of a hash map is not the same twice.
+    // The order of a hash map differs between runs.
     done.sort_unstable();
     done
 }

@@ -1,5 +1,5 @@
-//! From a scene to the bytes of a PNG or SVG file. With [`super::font`] the only place that knows
-//! plotters.
+//! From a scene to the bytes of a PNG or SVG file. Apart from [`super::font`], the only place that
+//! uses plotters.
 
 use plotters::backend::{BitMapBackend, DrawingBackend, RGBPixel, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -11,17 +11,17 @@ use super::font;
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
 
-/// Bitmaps are drawn this much larger and averaged: smooth edges.
+/// Bitmaps are drawn larger by this factor and averaged, for smooth edges.
 const OVERSAMPLING: u32 = 3;
-/// Units of an SVG picture in a pixel, since the backend counts in whole units.
+/// Units of an SVG picture per pixel, since the backend uses whole units.
 const SVG_UNITS: u32 = 10;
-/// Height of the font, ascent to descent, in ems: the bitmap backend counts the one, SVG the other.
+/// Height of the font from ascent to descent, in ems. The bitmap backend counts this height, SVG
+/// the em.
 const DEJAVU_HEIGHT: f64 = 1.164;
-/// What the SVG backend divides font sizes by.
+/// The factor by which the SVG backend divides font sizes.
 const SVG_FONT_FACTOR: f64 = 1.24;
 
-/// The picture as a PNG file.
-/// `texts`: keywords and what the file says under them.
+/// The picture as a PNG file. `texts`: keywords and their texts in the file.
 pub(super) fn png(scene: &Scene, texts: &[(&str, &str)]) -> Result<Vec<u8>, PictureError> {
     let (width, height) = scene.size;
     let (fine_width, fine_height) = (width * OVERSAMPLING, height * OVERSAMPLING);
@@ -179,7 +179,7 @@ impl<B: DrawingBackend> Pen<B> {
         self.backend.draw_path(places, &style).map_err(refused)
     }
 
-    /// A line as a row of discs: even width and round joints, which the backend's own wide lines
+    /// A line as a row of discs, with even width and round joints, which the backend's wide lines
     /// lack.
     fn brush(&mut self, points: &[Point], colour: Rgb, width: f64) -> Drawn {
         let radius = 0.5 * width * self.units;
@@ -241,7 +241,7 @@ impl<B: DrawingBackend> Pen<B> {
         Ok(())
     }
 
-    /// Cells as few rectangles.
+    /// Draws cells as few rectangles.
     fn cells(&mut self, columns: &[f64], rows: &[f64], colours: &[Rgb]) -> Drawn {
         let width = columns.len().saturating_sub(1);
         for Rectangle {
@@ -252,8 +252,8 @@ impl<B: DrawingBackend> Pen<B> {
         {
             let [(x0, y0), (x1, y1)] =
                 [(from, top), (to, bottom)].map(|(c, r)| self.units((columns[c], rows[r])));
-            // In SVG, where neighbours only touch, viewers let the paper shine through: each
-            // reaches below the next.
+            // Where SVG shapes only touch, viewers let the paper shine through; so each reaches
+            // below the next one.
             let overlap = |here: i32, next: i32, last: bool| match last || self.bitmap {
                 true => next,
                 false => next + (next - here).signum() * (self.units / 2.0) as i32,
@@ -269,7 +269,7 @@ impl<B: DrawingBackend> Pen<B> {
 
     fn text(&mut self, at: Point, size: f64, text: &str, colour: Rgb, upward: bool) -> Drawn {
         let size = size * self.units;
-        // Where the backend puts the baseline of a text that is placed by its upper edge.
+        // Where the backend puts the baseline of a text whose upper edge is given.
         let (size, baseline) = if self.bitmap {
             (size, 0.5 * size)
         } else {
@@ -313,8 +313,8 @@ fn ink(Rgb(r, g, b): Rgb, opacity: f64) -> RGBAColor {
     RGBColor(r, g, b).mix(opacity)
 }
 
-/// `text` with the spaces that an SVG viewer would drop, at the ends and beside others, made
-/// unbreakable.
+/// `text` with unbreakable spaces where an SVG viewer would drop them: at the ends and beside other
+/// spaces.
 fn with_kept_spaces(text: &str) -> String {
     let space = |c: Option<char>| c.is_none_or(|c| c == ' ');
     let characters: Vec<char> = text.chars().collect();

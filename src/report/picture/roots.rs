@@ -1,5 +1,5 @@
 //! A point of parameter space: its characteristic roots in the complex plane, and the number of
-//! unstable ones over the delay.
+//! unstable roots over the delay.
 
 use super::colour::{self, INK, Rgb, SOFT_INK, STABLE, UNSTABLE};
 use super::legend::{Legend, Swatch};
@@ -14,26 +14,26 @@ use crate::explore::point::Point;
 use crate::sweep::Parameter;
 use crate::sweep::input::units::Units;
 
-/// Part of the width for the complex plane.
+/// Share of the width for the complex plane.
 const PLANE: f64 = 0.56;
 /// Diameters of a root, and of the ring around the rightmost ones.
 const DOT: f64 = 11.0;
 const RING: f64 = 23.0;
 const HOLE: f64 = 17.0;
 const WIDTH: f64 = 2.6;
-/// The width of the lines at the delay that is asked for and at the certificate.
+/// Width of the lines at the setting's delay and at the certificate.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
-/// How much of the colours of stable delays and of the unstable half-plane is left.
+/// Strength of the colours of stable delays and of the unstable half-plane.
 const TINT: f64 = 0.45;
 
-/// Real parts within this of the imaginary ones are not told from 0.
+/// Real parts below this share of the imaginary ones count as 0.
 const FLAT: f64 = 1e-9;
 
-/// What is drawn of a point.
+/// The data of a picture of a point.
 #[derive(Debug, Clone, Copy)]
 pub struct PointPicture<'p> {
-    /// The point, with as many roots as are drawn.
+    /// The point, with the roots to draw.
     pub point: &'p Point,
     /// Its line of delays.
     pub along: &'p AlongDelay,
@@ -170,14 +170,14 @@ fn half_plane() -> Rgb {
     colour::pale(UNSTABLE[0], 2.0 * TINT)
 }
 
-/// Scales that hold all roots with their conjugates, and either side of the imaginary axis.
+/// Scales that hold all roots with their conjugates, and both sides of the imaginary axis.
 fn scales(roots: &[[f64; 2]]) -> (Scale, Scale) {
     let fold = |of: usize, start: f64, f: fn(f64, f64) -> f64| {
         roots.iter().map(|root| root[of]).fold(start, f)
     };
     let (left, right) = (fold(0, 0.0, f64::min), fold(0, 0.0, f64::max));
     let highest = fold(1, 0.0, f64::max);
-    // What is on the axis to rounding is drawn on it.
+    // Roots on the axis up to rounding are drawn on it.
     let width = match right - left {
         width if width > FLAT * highest => width,
         _ if highest > 0.0 => 0.1 * highest,

@@ -3,21 +3,21 @@
 use super::ticks::{self, Tick};
 use crate::sweep::input::system::SpeedUnit;
 
-/// Ratios of neighbouring values on a logarithmic axis agree this well.
+/// Relative agreement of the ratios of neighbouring values on a logarithmic axis.
 const SAME_RATIO: f64 = 1e-6;
-/// A logarithmic scale over less than this factor shows nothing that a linear one does not.
+/// The smallest factor between the ends of a logarithmic scale that shows more than a linear one.
 const SMALLEST_SPAN: f64 = 3.0;
-/// Where on a scale of speeds stands what is faster than all of them.
+/// The place on a scale of speeds of everything faster.
 const FASTER: f64 = 1.5;
 
-/// How values lie between the ends.
+/// The spacing of values between the ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Spread {
     /// Equal steps.
     Linear,
     /// Equal ratios.
     Logarithmic,
-    /// The values are periods, and equal steps are those of their speed.
+    /// The values are periods, evenly spaced in their speed.
     Speed(SpeedUnit),
 }
 
@@ -31,8 +31,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so,
-    /// on either side of 0.
+    /// The scale from the smallest to the largest of `values`; logarithmic if they are spaced so,
+    /// also if they are negative.
     pub(super) fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
@@ -46,7 +46,7 @@ impl Scale {
         }
     }
 
-    /// The scale on which every one of `values` has its whole cell: half a step more at both ends.
+    /// The scale that contains the whole cell of every value: half a step more at both ends.
     pub(super) fn around(values: &[f64]) -> Self {
         let scale = Self::between(values);
         let edges = scale.edges(values);
@@ -54,8 +54,8 @@ impl Scale {
         Self { from, to, ..scale }
     }
 
-    /// The scale of the speeds that go with the periods `values`, the slowest to the left; none
-    /// where fewer than two of them are positive. A period of 0 has no place on it.
+    /// The scale of the speeds of the periods `values`, the slowest to the left; none where fewer
+    /// than two are positive. A period of 0 has no place on it.
     pub(super) fn of_speeds(values: &[f64], unit: SpeedUnit) -> Option<Self> {
         let positive: Vec<f64> = values.iter().copied().filter(|v| *v > 0.0).collect();
         let (from, to) = ends(&positive);
@@ -85,8 +85,8 @@ impl Scale {
         }
     }
 
-    /// A logarithmic scale over all positive `values`, or over the uppermost `decades` and a part
-    /// of one where they are spread wider; none where there is no positive one.
+    /// A logarithmic scale over all positive `values` or, if they spread wider, over the uppermost
+    /// `decades` and part of one; none without a positive value.
     pub(super) fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
         let positive = values.filter(|v| v.is_finite() && *v > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
@@ -109,7 +109,7 @@ impl Scale {
         }
     }
 
-    /// Where a value lies: 0 at the lower end, 1 at the upper one.
+    /// The position of a value: 0 at the lower end, 1 at the upper one.
     pub(super) fn part(&self, value: f64) -> f64 {
         match self.spread {
             Spread::Logarithmic => (value / self.from).ln() / (self.to / self.from).ln(),
@@ -117,20 +117,20 @@ impl Scale {
             Spread::Speed(unit) => {
                 let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
                 let speed = unit.speed(value.max(f64::MIN_POSITIVE));
-                // What is faster than all of the scale is just beyond it.
+                // Everything faster than the scale is put just beyond its end.
                 ((speed - slowest) / (fastest - slowest)).min(FASTER)
             }
         }
     }
 
-    /// The value at a part of the way.
+    /// The value at a position.
     pub(super) fn value(&self, part: f64) -> f64 {
         match self.spread {
             Spread::Logarithmic => self.from * (self.to / self.from).powf(part),
             Spread::Linear => self.from + (self.to - self.from) * part,
             Spread::Speed(unit) => {
                 let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
-                // The period of a speed is found as the speed of a period is.
+                // The conversion from speed to period is the same as from period to speed.
                 unit.speed(slowest + (fastest - slowest) * part)
             }
         }
@@ -163,8 +163,8 @@ impl Scale {
         }
     }
 
-    /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as
-    /// far beyond the ends. Those of periods end within them.
+    /// The edges of the cells of `values`, one more than there are cells: midpoints on the scale,
+    /// and as far beyond the ends. For periods the outer edges are the end values themselves.
     pub(super) fn edges(&self, values: &[f64]) -> Vec<f64> {
         let middle = |a: f64, b: f64| match self.spread {
             Spread::Logarithmic => (a * b).sqrt().copysign(a),
@@ -186,7 +186,7 @@ impl Scale {
         edges
     }
 
-    /// The edges of cells that stand for all values on the scale: those at the ends reach the ends.
+    /// The edges of cells that fill the scale: the first and the last one reach its ends.
     pub(super) fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
         let mut edges = self.edges(values);
         let growing = values.first() <= values.last();

@@ -1,12 +1,12 @@
-//! What is on a picture, in pixels from its upper left corner, apart from how it is rendered.
+//! The contents of a picture, in pixels from its upper left corner, independent of rendering.
 
 use super::colour::{PAPER, Rgb};
 use super::text::Rich;
 
-/// Place in pixels: to the right, downwards.
+/// A place in pixels: to the right, downwards.
 pub(super) type Point = (f64, f64);
 
-/// One thing drawn.
+/// One drawn element.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Mark {
     /// A filled rectangle.
@@ -31,7 +31,7 @@ pub(super) enum Mark {
     },
     /// The area between two curves over the same places.
     Band {
-        /// (x, y of one curve, y of the other), by growing x.
+        /// (x, y of one curve, y of the other), by increasing x.
         slices: Vec<(f64, f64, f64)>,
         /// Colour.
         colour: Rgb,
@@ -40,7 +40,7 @@ pub(super) enum Mark {
     },
     /// A line of text.
     Text {
-        /// Left end of the baseline, before a turn.
+        /// Left end of the baseline, before rotation.
         at: Point,
         /// Height of the font in pixels.
         size: f64,
@@ -48,12 +48,12 @@ pub(super) enum Mark {
         text: String,
         /// Colour.
         colour: Rgb,
-        /// Reads upwards.
+        /// Whether it reads upwards.
         upward: bool,
     },
     /// A grid of cells.
     Cells {
-        /// Edges from left to right, one more than there are columns; growing or shrinking.
+        /// Edges from left to right, one more than there are columns; increasing or decreasing.
         columns: Vec<f64>,
         /// Edges, one more than there are rows.
         rows: Vec<f64>,
@@ -62,7 +62,7 @@ pub(super) enum Mark {
     },
 }
 
-/// Where a text stands relative to its place.
+/// The position of a text relative to its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
     /// The text starts there.
@@ -78,7 +78,7 @@ pub(super) enum Align {
 pub(super) struct Scene {
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// What is drawn.
+    /// The drawn elements.
     pub marks: Vec<Mark>,
 }
 
@@ -91,8 +91,7 @@ impl Scene {
         }
     }
 
-    /// The size of a pixel of a picture of 1600 × 1100 in this one: all fonts and gaps grow with
-    /// it.
+    /// The unit of this picture: 1 for 1600 × 1100 pixels. All fonts and gaps scale with it.
     pub(super) fn unit(&self) -> f64 {
         (f64::from(self.size.0) / 1600.0).min(f64::from(self.size.1) / 1100.0)
     }
@@ -137,7 +136,7 @@ impl Scene {
 
     /// Adds a dot.
     pub(super) fn dot(&mut self, (x, y): Point, colour: Rgb, diameter: f64) {
-        // A line with round ends that is too short to be seen as one.
+        // A line with round ends that is too short to be visible as a line.
         self.path(vec![(x - 0.1, y), (x + 0.1, y)], colour, diameter);
     }
 
@@ -194,7 +193,7 @@ impl Scene {
         }
     }
 
-    /// Adds a text that reads upwards, its middle at `at`, its baseline to the right of the
+    /// Adds a text that reads upwards, with its centre at `at` and its baseline to the right of the
     /// letters.
     pub(super) fn upward_text(&mut self, at: Point, text: &Rich, size: f64, colour: Rgb) {
         let bottom = at.1 + 0.5 * text.width(size);

@@ -1,4 +1,4 @@
-//! Delays that are periods, shown by their speed: stability lobes as engineers draw them.
+//! Delays that are periods, shown as speeds: stability lobes in the form that engineers use.
 
 use super::scale::Scale;
 use super::text::{Rich, axis_title};
@@ -7,14 +7,14 @@ use crate::store::map_file::MapAxis;
 use crate::sweep::Parameter;
 use crate::sweep::input::system::SpeedAxis;
 
-/// The speed that an axis stands for, where the map's system says that its delay is a period.
+/// The speed shown for an axis, if the map's system says that its delay is a period.
 fn speed_of<'m>(map: &'m MapFile, axis: &MapAxis) -> Option<&'m SpeedAxis> {
     let speed = map.system()?.speed_axis.as_ref()?;
     let shown = Scale::of_speeds(&axis.values, speed.unit).is_some();
     (shown && axis.parameter == Parameter::Tau).then_some(speed)
 }
 
-/// Whether the delay of a map is shown as a speed, and so from left to right.
+/// Whether the delay of a map is shown as a speed, and therefore from left to right.
 pub(super) fn is_shown(map: &MapFile, axis: &MapAxis) -> bool {
     speed_of(map, axis).is_some()
 }
@@ -25,7 +25,7 @@ pub(super) fn scale(map: &MapFile, axis: &MapAxis) -> Scale {
     speeds.unwrap_or_else(|| Scale::around(&axis.values))
 }
 
-/// "spindle speed  (rpm)", or what the axis itself is.
+/// "spindle speed  (rpm)", or the title of the axis itself.
 pub(super) fn title(map: &MapFile, axis: &MapAxis) -> Rich {
     match speed_of(map, axis) {
         Some(speed) => Rich::plain(&format!("{}  ({})", speed.name, speed.unit.name())),

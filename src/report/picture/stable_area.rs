@@ -5,14 +5,14 @@ use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::store::map_file::Plane;
 use crate::sweep::Field;
 
-/// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by growing x.
+/// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by increasing x.
 pub(super) type Region = Vec<(f64, f64, f64)>;
 
-/// The stable regions of one plane within a panel, cut into parts that each are one interval at
+/// The stable regions of one plane within a panel, cut into parts that are a single interval at
 /// every x.
 ///
-/// `pieces` are those that bound the stable region. `without_crossing` says whether sliding is
-/// stable at the values of the panel's x axis where no piece lies.
+/// `pieces` are the curves that bound the stable region. `without_crossing` says whether sliding is
+/// stable at a value of the panel's x axis where no piece lies.
 pub(super) fn regions(
     panel: &Panel,
     pieces: &[&CurvePiece],
@@ -31,7 +31,7 @@ pub(super) fn regions(
         let before = std::mem::take(&mut open);
         let mut before = before.into_iter().peekable();
         for interval in intervals {
-            // What ends below this interval goes on no further.
+            // A region that ends below this interval does not continue.
             while let Some(region) = before.next_if(|region| ends_below(region, interval)) {
                 done.push(region);
             }
@@ -47,12 +47,13 @@ pub(super) fn regions(
     done
 }
 
-/// True if the last slice of the region lies below the interval, in pixels, which grow downwards.
+/// Whether the last slice of the region lies below the interval; pixel coordinates increase
+/// downwards.
 fn ends_below(region: &Region, interval: (f64, f64)) -> bool {
     region.last().is_none_or(|&(_, _, high)| high > interval.0)
 }
 
-/// True if the last slice of the region lies above the interval.
+/// Whether the last slice of the region lies above the interval.
 fn ends_above(region: &Region, interval: (f64, f64)) -> bool {
     region.last().is_none_or(|&(_, low, _)| low < interval.1)
 }
@@ -80,7 +81,7 @@ pub(super) fn intervals(
         match side {
             StableSide::Longer => start = start.or(Some(here)),
             StableSide::Shorter => intervals.extend(start.take().map(|from| (from, here))),
-            // Lines of one p are at none.
+            // Lines of constant p bound no interval.
             StableSide::Neither | StableSide::Below | StableSide::Above => {}
         }
     }
@@ -88,8 +89,8 @@ pub(super) fn intervals(
     intervals
 }
 
-/// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells
-/// say so.
+/// Whether the column of cells nearest to `p`, which no curve crosses, is stable, by the majority
+/// of its cells.
 pub(super) fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
     let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
     let Some((column, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
@@ -102,13 +103,12 @@ pub(super) fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
     2 * stable > plane.rows.len()
 }
 
-/// The delay of a curve at `p`; none where it does not reach. A curve is a function of p between
-/// its folds.
+/// The delay of a curve at `p`; none beyond its ends. Between its folds a curve is a function of p.
 fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
     let first = vertices.first()?.p;
     let last = vertices.last()?.p;
     let (low, high) = (first.min(last), first.max(last));
-    // Half open: where one piece goes over into the next, only one of them counts.
+    // Half-open: where two pieces meet, only one of them counts.
     if !(low <= p && p < high) {
         return None;
     }

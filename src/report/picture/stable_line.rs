@@ -1,5 +1,5 @@
-//! Where along a line sliding is stable: between the boundaries that the map holds, or else between
-//! the edges of its cells.
+//! Stable stretches along a line: between the boundaries in the map, or else between the edges of
+//! its cells.
 
 use super::colour::STABLE_TINT;
 use super::error::PictureError;
@@ -10,10 +10,11 @@ use crate::linear::curves::{CurvePiece, Vertex};
 use crate::report::known::{Gap, Known};
 use crate::store::{MapFile, StoreError};
 
-/// So near to the end of an axis, as a part of it, curves are read: they end at its last value.
+/// Relative distance from the end of an axis at which curves are read there: they end at its last
+/// value.
 const END: f64 = 1e-9;
 
-/// Shades where sliding is stable along the axis `view.x`, in a map that tells.
+/// Shades the stable stretches along the axis `view.x`, if the map has stability.
 pub(super) fn shade(
     map: &MapFile,
     view: &View,
@@ -53,7 +54,7 @@ pub(super) fn shade(
     Ok(())
 }
 
-/// What a cell tells of the stability of sliding.
+/// The stability of sliding in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cell {
     Stable,
@@ -72,8 +73,8 @@ struct Line {
 }
 
 impl Line {
-    /// Where it is stable. Between two cells `crossings` of the boundary tell, unless they do not
-    /// fit to what the cells are: then the edges of cells do.
+    /// The stable stretches. Between two cells the `crossings` of the boundary decide, unless they
+    /// contradict the cells; then the edges of the cells do.
     fn stretches(&self, crossings: &[f64]) -> Vec<(f64, f64)> {
         let known = |i: &usize| matches!(self.cells[*i], Cell::Stable | Cell::Unstable);
         let known: Vec<usize> = (0..self.cells.len()).filter(known).collect();
@@ -114,8 +115,7 @@ impl Line {
     }
 }
 
-/// Where the boundaries of stability that the map holds cross the line along the axis `x` at
-/// `index`.
+/// Where the boundaries of stability in the map cross the line along the axis `x` at `index`.
 pub(super) fn crossings(map: &MapFile, x: usize, index: &[usize]) -> Result<Vec<f64>, StoreError> {
     let Some((p, tau)) = map.boundary_plane().filter(|&(p, tau)| x == p || x == tau) else {
         return Ok(Vec::new());
@@ -138,8 +138,8 @@ pub(super) fn crossings(map: &MapFile, x: usize, index: &[usize]) -> Result<Vec<
         .collect())
 }
 
-/// Where a curve crosses the line at this value of the parameter, `along_delay`; of the delay
-/// otherwise.
+/// Where a curve crosses a line: at this value of the parameter if `along_delay`, else at this
+/// value of the delay.
 fn crossed(piece: &CurvePiece, held_at: f64, along_delay: bool) -> impl Iterator<Item = f64> {
     let place = move |v: &Vertex| match along_delay {
         true => (v.p, v.q),
@@ -147,7 +147,7 @@ fn crossed(piece: &CurvePiece, held_at: f64, along_delay: bool) -> impl Iterator
     };
     piece.vertices.windows(2).filter_map(move |pair| {
         let ((a, from), (b, to)) = (place(&pair[0]), place(&pair[1]));
-        // Half open: where one part goes over into the next, only one of them counts.
+        // Half-open: where two parts meet, only one of them counts.
         let inside = a.min(b) <= held_at && held_at < a.max(b);
         inside.then(|| from + (held_at - a) / (b - a) * (to - from))
     })
@@ -171,14 +171,14 @@ mod tests {
         let two = line(&[Unstable, Stable]);
         assert_eq!(two.stretches(&[0.9]), [(0.9, 1.5)]);
         assert_eq!(two.stretches(&[]), [(0.5, 1.5)]);
-        // An island between two cells, and one that a cell of another kind holds.
+        // An island between two cells, and one with a cell of the other kind in it.
         assert_eq!(
             line(&[Unstable, Unstable]).stretches(&[0.3, 0.2]),
             [(0.2, 0.3)]
         );
         let stable = line(&[Stable, Stable, Stable]);
         assert_eq!(stable.stretches(&[]), [(-0.5, 2.5)]);
-        // A cell on the boundary belongs to no side; what is not known is not shaded.
+        // A cell on the boundary belongs to neither side; unknown cells are not shaded.
         let on = line(&[Unstable, OnBoundary, Stable]);
         assert_eq!(on.stretches(&[1.0]), [(1.0, 2.5)]);
         let unknown = line(&[Stable, Unknown, Stable]);

@@ -1,4 +1,4 @@
-//! Panels above one another, with one axis from left to right and scales of their own upwards.
+//! Panels above one another, with a common axis from left to right and their own scales upwards.
 
 use super::colour::INK;
 use super::page::{Area, LABEL, SMALL};
@@ -11,16 +11,16 @@ use super::ticks::Tick;
 /// Space between panels, relative to the font of numbers.
 const GAP: f64 = 0.55;
 
-/// One panel of a stack.
+/// One row of a stack.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Row {
-    /// From bottom to top.
+    /// The scale from bottom to top.
     pub scale: Scale,
-    /// To the left of the panel.
+    /// The title to the left of the panel.
     pub title: Rich,
 }
 
-/// Panels of one height.
+/// Panels of equal height.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stack {
     /// The panels from the top.
@@ -46,7 +46,7 @@ impl Stack {
             .collect();
         let labels = up.iter().flatten().filter_map(|t| t.label.as_deref());
         let left = outside.left + left_margin(labels, u);
-        // Half of the last label stands out to the right.
+        // Half of the last label extends to the right.
         let right = outside.right - 1.1 * SMALL * u;
         let panel = |(i, row): (usize, &Row)| {
             let top = outside.top + gap + i as f64 * (height + gap);
@@ -78,7 +78,7 @@ impl Stack {
         }
     }
 
-    /// Draws frames, ticks and all that is written, after the contents.
+    /// Draws frames, ticks and texts, after the contents.
     pub(super) fn draw_axes(&self, scene: &mut Scene) {
         let u = scene.unit();
         let outside = self.outside;

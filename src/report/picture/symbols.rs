@@ -1,4 +1,4 @@
-//! Places in a plane that have a symbol: where the block slides evenly, the best setting.
+//! Places in a plane marked by a symbol: steady sliding, the best setting.
 
 use super::colour::{INK, PAPER};
 use super::legend::Swatch;
@@ -10,24 +10,25 @@ use crate::store::{MapFile, StoreError};
 use crate::sweep::Parameter;
 use crate::sweep::input::setting::Setting;
 
-/// Half the size of a symbol, its line, and the paper around it, in units of the picture.
+/// Half the size of a symbol, the width of its line, and the paper around it, in units of the
+/// picture.
 const SIZE: f64 = 9.0;
 const WIDTH: f64 = 2.6;
 const HALO: f64 = 6.5;
 /// Corners of a ring.
 const CORNERS: u32 = 32;
 
-/// What has a symbol.
+/// The kinds of symbols.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Symbol {
-    /// Even sliding at v0: a ring.
+    /// Steady sliding at v0: a ring.
     Sliding,
     /// The setting of fastest decay: a diamond.
     Best,
 }
 
 impl Symbol {
-    /// What it means.
+    /// Its meaning.
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Sliding => "even sliding at v_0",
@@ -53,7 +54,7 @@ impl Symbol {
     }
 }
 
-/// The symbols of a panel, with their values on its axes.
+/// The symbols of a panel, with their places on its axes.
 pub(super) type Placed = Vec<(Symbol, (f64, f64))>;
 
 /// The symbols of every panel of a view with the axes (x, y).
@@ -102,7 +103,7 @@ pub(super) fn entries(panels: &[Placed]) -> Vec<(Swatch, Rich)> {
     there.into_iter().map(entry).collect()
 }
 
-/// Draws symbols into a panel, those within it.
+/// Draws the symbols within a panel.
 pub(super) fn draw(panel: &Panel, symbols: &[(Symbol, (f64, f64))], scene: &mut Scene) {
     for (symbol, (x, y)) in symbols {
         if panel.x.holds(*x) && panel.y.holds(*y) {
@@ -111,7 +112,7 @@ pub(super) fn draw(panel: &Panel, symbols: &[(Symbol, (f64, f64))], scene: &mut 
     }
 }
 
-/// The place of even sliding in a plane of starts.
+/// The place of steady sliding in a plane of starts.
 fn sliding_in(map: &MapFile, plane: (usize, usize), index: &[usize]) -> Option<(f64, f64)> {
     let parameters = [plane.0, plane.1].map(|axis| map.axes()[axis].parameter.known());
     let swapped = match parameters {
@@ -130,7 +131,7 @@ fn sliding_in(map: &MapFile, plane: (usize, usize), index: &[usize]) -> Option<(
     })
 }
 
-/// Elongation and velocity of even sliding.
+/// Elongation and velocity of steady sliding.
 pub(super) fn sliding(setting: &Setting) -> Option<(f64, f64)> {
     let v0 = setting.get(Parameter::V0);
     let force = setting.sliding_point().ok()?.mu_k * setting.get(Parameter::NormalLoad);

@@ -95,7 +95,7 @@ fn stable_and_unstable_cells_differ() {
     // About a third of the plane is stable.
     assert!(count(colour::STABLE) > area / 10);
     assert!(count(colour::of_count(2.0)) > area / 10);
-    // The edges of letters have any grey.
+    // The edges of letters have any shade of grey.
     assert!(count(colour::NO_VALUE) < area / 1000);
 }
 
@@ -118,7 +118,7 @@ fn an_svg_names_values_axes_and_units() {
     assert!(text.len() < 1_000_000);
 }
 
-/// The title of a sweep is about the field that it shows.
+/// The title of a sweep is used only for the field that it shows.
 #[test]
 fn titles_tell_the_field() {
     let named = FIG2.replace("boundaries = true", "picture = \"delay_margin\"");
@@ -161,8 +161,8 @@ fn every_shape_of_map_is_drawn() {
     }
 }
 
-/// Along either axis of the plane of curves, a line is shaded to where stability changes, whatever
-/// its cells are.
+/// Along either axis of the plane of curves, shading ends exactly where stability changes, whatever
+/// the cells are.
 #[test]
 fn a_line_is_shaded_to_the_exact_boundary() {
     let case = Case::new(&FIG2.replace("points = 61", "points = 7"));
@@ -187,7 +187,7 @@ fn a_line_is_shaded_to_the_exact_boundary() {
     let expected = exact(axes[1].values[gain]);
     assert_eq!(expected.len(), 2, "{expected:?}");
     near(&mut along_delay, &expected);
-    // Where the boundary crosses along the gain, the delay is one at which stability changes.
+    // At a crossing along the gain, stability changes at this delay.
     let tau = axes[2].values[delay];
     let along_gain = stable_line::crossings(&case.map, 1, &index).unwrap();
     assert!(!along_gain.is_empty());

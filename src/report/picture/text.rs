@@ -1,4 +1,4 @@
-//! Names, values and units as they are written on a picture.
+//! Names, values and units as written in a picture.
 
 use super::font;
 use crate::store::map_file::MapAxis;
@@ -6,12 +6,11 @@ use crate::sweep::Field;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::source::{OfRoots, Source};
 
-/// Subscripts relative to the text.
+/// Size of subscripts relative to the text.
 const SUBSCRIPT_SIZE: f64 = 0.72;
 const SUBSCRIPT_DROP: f64 = 0.18;
 
-/// More characters than this are not drawn: a map may come from anywhere, and a picture has no room
-/// for them.
+/// The most characters of a text: a map may come from anywhere, and a picture has no room for more.
 const MOST_CHARACTERS: usize = 500;
 
 /// A line of text in which a letter may be a subscript.
@@ -19,7 +18,7 @@ const MOST_CHARACTERS: usize = 500;
 pub(super) struct Rich(Vec<(String, bool)>);
 
 impl Rich {
-    /// A text without subscripts. Characters that no picture can show are left out.
+    /// A text without subscripts. Characters that cannot be drawn are left out.
     pub(super) fn plain(text: &str) -> Self {
         Self::default().and(text)
     }
@@ -53,8 +52,8 @@ impl Rich {
         self
     }
 
-    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript. A name of
-    /// several words is no formula.
+    /// The text followed by the symbol of a parameter. A 0 at its end becomes a subscript; a name
+    /// of several words is not read as a formula.
     pub(super) fn and_symbol(self, parameter: impl Into<Quantity>) -> Self {
         let parameter = parameter.into();
         let symbol = parameter.symbol();
@@ -68,7 +67,7 @@ impl Rich {
         }
     }
 
-    /// The text followed by `formula`, in which the letter behind each `_` is a subscript.
+    /// The text followed by `formula`, in which the letter after each `_` is a subscript.
     pub(super) fn and_formula(self, formula: &str) -> Self {
         let mut parts = formula.split('_');
         let mut text = self.and(parts.next().unwrap_or_default());
@@ -120,7 +119,7 @@ pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str)
 /// "gain of velocity control α_v (s⁻¹)".
 pub(super) fn axis_title(axis: &MapAxis) -> Rich {
     let (long, symbol) = (axis.parameter.long_name(), axis.parameter.symbol());
-    // Of a system's own parameter there may be nothing to say but its name.
+    // A system's own parameter may have nothing but its name.
     let named = match long == symbol {
         true => Rich::default(),
         false => Rich::plain(long).and("  "),
@@ -130,12 +129,12 @@ pub(super) fn axis_title(axis: &MapAxis) -> Rich {
         .and(&suffix(&axis.unit, "  (", ")"))
 }
 
-/// A field by its name in the map, and what it is there in full.
+/// A field by its name in the map, followed by its full meaning.
 pub(super) fn field_note(field: Field, about: &str, unit: &str) -> Rich {
     Rich::plain(&format!("{}: {about}", field.name())).and(&suffix(unit, "  (", ")"))
 }
 
-/// What a field is, in short.
+/// The short name of a field, with its unit.
 pub(super) fn field_title(field: Field, unit: &str) -> Rich {
     field_name(field).and(&suffix(unit, "  (", ")"))
 }
@@ -153,7 +152,7 @@ pub(super) fn field_name(field: Field) -> Rich {
     }
 }
 
-/// The unit between brackets; nothing for dimensionless quantities.
+/// The unit in brackets; empty for dimensionless quantities.
 pub(super) fn suffix(unit: &str, open: &str, close: &str) -> String {
     if unit == "1" || unit.is_empty() {
         return String::new();
@@ -199,8 +198,7 @@ pub(super) fn number(value: f64) -> String {
     with_power(trimmed(mantissa), exponent)
 }
 
-/// A number with `decimals` digits behind the point, divided by a power of ten that is written
-/// behind it.
+/// A number with `decimals` digits after the point, divided by a power of ten that follows it.
 pub(super) fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String {
     match exponent {
         None => with_minus(&format!("{value:.decimals$}")),

@@ -5,14 +5,14 @@ use super::text::{decimal_exponent, tick_number};
 /// A mark on an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tick {
-    /// Where it stands.
+    /// The value that it marks.
     pub value: f64,
-    /// What is written there; none for a minor tick.
+    /// Its text; none for a minor tick.
     pub label: Option<String>,
 }
 
 impl Tick {
-    /// The tick at minus this one's value, which is positive.
+    /// The tick at the negative of this one's value, which is positive.
     pub(super) fn mirrored(self) -> Self {
         Self {
             value: -self.value,
@@ -21,11 +21,11 @@ impl Tick {
     }
 }
 
-/// Decades within which numbers are written without a power of ten.
+/// Decades in which numbers are written without a power of ten.
 const PLAIN: std::ops::Range<i32> = -4..6;
 
-/// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten, at most `most` and no
-/// nearer than `smallest_step`.
+/// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten: at most `most`, and at
+/// least `smallest_step` apart.
 pub(super) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec<Tick> {
     let rough = ((to - from) / most.max(1) as f64).max(smallest_step);
     let step = round_step(rough);
@@ -34,7 +34,7 @@ pub(super) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec
     }
     let (first, last) = ((from / step - 1e-9).ceil(), (to / step + 1e-9).floor());
     let largest = from.abs().max(to.abs());
-    // So narrow a range so far from zero has no ticks that could be told apart.
+    // In a very narrow range far from zero, ticks could not be told apart.
     let few = (0.0..=2.0 * most as f64 + 2.0).contains(&(last - first));
     if !few || largest / step > 1e12 {
         return Vec::new();

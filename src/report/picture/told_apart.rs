@@ -1,12 +1,13 @@
-//! Whether colours that mean different things are told apart by everybody: with normal sight and
+//! Tests that colours with different meanings can be told apart by everybody: with normal sight and
 //! with each of the three kinds of colour blindness.
 //!
-//! What a dichromat sees is simulated as G. M. Machado, M. M. Oliveira and L. A. F. Fernandes, "A
-//! Physiologically-based Model for Simulation of Color Vision Deficiency", IEEE Transactions on
-//! Visualization and Computer Graphics 15 (2009) 1291, at severity 1. Differences are CIEDE2000; of
-//! two areas side by side one of 2 is seen by a careful eye, one of 10 at a glance.
+//! The sight of a dichromat is simulated by G. M. Machado, M. M. Oliveira and L. A. F. Fernandes,
+//! "A Physiologically-based Model for Simulation of Color Vision Deficiency", IEEE Transactions on
+//! Visualization and Computer Graphics 15 (2009) 1291, at severity 1. Differences are CIEDE2000.
+//! For two areas side by side, a careful eye sees a difference of 2; a difference of 10 is seen at
+//! a glance.
 //!
-//! Cells that lines are drawn over are told by these lines.
+//! Hatched cells are told apart by their lines.
 
 use palette::color_difference::Ciede2000;
 use palette::convert::FromColorUnclamped;
@@ -20,14 +21,15 @@ use super::gradient::ColourMap;
 use crate::sweep::Field;
 use crate::sweep::input::field::OUTCOMES;
 
-/// Between two meanings, and between one and an end of a colour map.
+/// The least difference between two meanings, and between a meaning and an end of a colour map.
 const APART: f64 = 10.0;
-/// Between a meaning and any colour of a colour map, which has its place on the bar beside it.
+/// The least difference between a meaning and any colour of a colour map, whose bar stands beside
+/// it.
 const ANYWHERE: f64 = 7.0;
 
 type Matrix = [[f64; 3]; 3];
 
-/// On linear RGB: normal sight, protanopia, deuteranopia, tritanopia.
+/// Matrices on linear RGB: normal sight, protanopia, deuteranopia, tritanopia.
 const SIGHTS: [(&str, Matrix); 4] = [
     (
         "normal",
@@ -69,7 +71,7 @@ fn seen(Rgb(r, g, b): Rgb, matrix: &Matrix) -> Lab<palette::white_point::D65, f6
     Lab::from_color_unclamped(LinSrgb::new(r, g, b))
 }
 
-/// The least difference that anybody sees, and who.
+/// The smallest difference among all kinds of sight, and for which it is smallest.
 fn difference(a: Rgb, b: Rgb) -> (f64, &'static str) {
     let of = |(sight, matrix): &(&'static str, Matrix)| {
         (seen(a, matrix).difference(seen(b, matrix)), *sight)
@@ -82,7 +84,7 @@ fn difference(a: Rgb, b: Rgb) -> (f64, &'static str) {
 
 type Named = (&'static str, Rgb);
 
-/// Pairs of meanings that are too alike.
+/// Pairs of meanings that are too similar.
 fn alike(meanings: &[Named]) -> Vec<String> {
     let mut found = Vec::new();
     for (i, (name, colour)) in meanings.iter().enumerate() {
@@ -96,7 +98,7 @@ fn alike(meanings: &[Named]) -> Vec<String> {
     found
 }
 
-/// Meanings that are too alike a colour of a scale.
+/// Meanings that are too similar to a colour of a scale.
 fn on_the_scale(meanings: &[Named], scale: &[Rgb]) -> Vec<String> {
     let mut found = Vec::new();
     for (name, colour) in meanings {
@@ -114,7 +116,7 @@ fn none(found: &[String], of: &str) {
     assert!(found.is_empty(), "{of}: {found:#?}");
 }
 
-/// Colours of cells without a value beside those of every field.
+/// Colours of cells without a value, which occur beside those of every field.
 const GAPS: [Named; 2] = [("lifts off", LIFTS_OFF), ("persists", PERSISTS)];
 
 #[test]
@@ -131,7 +133,7 @@ fn the_matrices_and_the_difference_are_the_published_ones() {
     let lab = |l, a, b| Lab::<palette::white_point::D65, f64>::new(l, a, b);
     let found = lab(50.0, 2.6772, -79.7751).difference(lab(50.0, 0.0, -82.7485));
     assert!((found - 2.0425).abs() < 1e-4);
-    // Red and green of one lightness.
+    // Red and green of equal lightness.
     let (red, green) = (Rgb(0xc0, 0x50, 0x50), Rgb(0x60, 0x80, 0x40));
     assert!(seen(red, &SIGHTS[0].1).difference(seen(green, &SIGHTS[0].1)) > 30.0);
     assert!(difference(red, green).0 < 15.0);
@@ -158,7 +160,7 @@ fn sizes() {
         none(&on_the_scale(&meanings, &scale), map.name());
         let [low, high] = [0.0, 1.0].map(|end| colour::of_size(map, end));
         for end in [("low", low), ("high", high)] {
-            // Below and above come after the ends as the next step.
+            // The colours below and above the scale continue its steps.
             let others = meanings.iter().filter(|(name, _)| {
                 !matches!((end.0, *name), ("low", "below") | ("high", "above"))
             });
@@ -206,7 +208,7 @@ fn counts_and_kinds() {
     let kinds = |field: Field, numbers: &[usize]| -> Vec<Named> {
         let names = field.kinds().unwrap();
         let named = |&n: &usize| (names[n], colour::of_kind(field, n as f64));
-        // Undecided ones have lines.
+        // Undecided cells are hatched.
         numbers
             .iter()
             .map(named)
@@ -231,7 +233,7 @@ fn counts_and_kinds() {
     none(&alike(&few.chain(GAPS).collect::<Vec<_>>()), "small counts");
 }
 
-/// Of more than five lines each has its value written at it.
+/// With more than five lines, each has its value written beside it.
 #[test]
 fn lines_and_what_lies_below_them() {
     const NAMES: [&str; 5] = ["0", "1", "2", "3", "4"];
@@ -262,7 +264,7 @@ fn lines_over_cells_are_seen() {
     }
 }
 
-/// Larger is lighter, for everybody; values with two sides are lightest in the middle.
+/// Larger values are lighter for everybody; two-sided scales are lightest in the middle.
 #[test]
 fn colour_maps_are_monotone_in_lightness() {
     for (sight, matrix) in SIGHTS {

@@ -16,17 +16,17 @@ use crate::sweep::cells::trace::{Sample, TraceEvent};
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 const WIDTH: f64 = 2.6;
-/// The line of a switch-on or a lift-off.
+/// Width of the line at a switch-on or a lift-off.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
-/// That of the time when the velocity has settled.
+/// Dashes of the line at the time when the velocity has settled.
 const SETTLED: (f64, f64) = (1.0, 5.0);
-/// Part of the width for the panels over time.
+/// Share of the width for the panels over time.
 const OVER_TIME: f64 = 0.655;
 /// The most points of the phase portrait, counted from the end: older ones would be covered.
 const MOST_PORTRAIT: usize = 30_000;
 
-/// What a curve shows of a sample.
+/// The value of a sample that a curve shows.
 type Value = fn(&Sample) -> f64;
 
 /// A curve over time.
@@ -75,7 +75,7 @@ pub(super) fn draw((spec, title): (&CaseSpec, &str), trace: &Trace, scene: &mut 
     legend.draw(scene, column);
 }
 
-/// The setting, and what became of the motion.
+/// The setting, and the outcome of the motion.
 fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
     let (setting, units) = (&spec.setting, &spec.units);
     let mut notes = vec![];
@@ -112,7 +112,7 @@ fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
     notes
 }
 
-/// The time from which on the block's velocity is within 1 % of v0; NaN where it never is.
+/// The time from which the block's velocity stays within 1 % of v0; NaN if it never does.
 fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
     // Without control the time counts from the start.
     let controlled = spec.setting.control() != Control::default();
@@ -125,7 +125,7 @@ fn end(trace: &Trace) -> f64 {
     trace.samples.last().map_or(0.0, |s| s.t)
 }
 
-/// The panels over time: the last one shows what is controlled, if anything is.
+/// The panels over time. The last one shows the controlled quantity, if there is one.
 fn strips(spec: &CaseSpec) -> Vec<Strip> {
     let [dark, light] = [colour::of_line(0, 3), colour::of_line(2, 3)];
     let curve = |of, colour, name| Curve { of, colour, name };
@@ -168,7 +168,7 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
         title: Rich::plain(&strip.title),
     };
     let end = end(trace);
-    // A lift-off is the end of the trace: its mark needs a place beside the frame.
+    // A lift-off ends the trace; its mark needs room beside the frame.
     let room = if lifts_off(trace) { 1.03 } else { 1.0 };
     let x = Scale::linear(0.0, if end > 0.0 { room * end } else { 1.0 });
     let below = format!("time t{}", suffix(&spec.units.time(), "  (", ")"));
@@ -193,7 +193,7 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
     stack.draw_axes(scene);
 }
 
-/// Events with a mark of their own, within the picture.
+/// The events with a mark of their own that lie within the picture.
 fn marked(trace: &Trace) -> impl Iterator<Item = &TraceEvent> {
     let end = end(trace);
     let events = trace.events.iter().filter(move |e| e.t <= end);
@@ -259,7 +259,7 @@ fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
     if low > high {
         return Scale::linear(0.0, 1.0);
     }
-    // What does not vary is drawn in the middle.
+    // A constant is drawn in the middle.
     let least = 1e-6 * high.abs().max(low.abs());
     let room = match high - low {
         span if span > least => 0.06 * span,
@@ -269,8 +269,8 @@ fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
     Scale::linear(low - room, high + room)
 }
 
-/// A curve over growing x with no more points than can be seen: of each column of pixels the first,
-/// the extremes, the last.
+/// A curve with increasing x, reduced to the visible points: the first, the extremes and the last
+/// of each column of pixels.
 fn by_columns(points: impl Iterator<Item = Point>) -> Vec<Point> {
     let mut kept = Vec::new();
     let mut column: Vec<Point> = Vec::new();
@@ -301,7 +301,7 @@ fn close_column(column: &mut Vec<Point>, kept: &mut Vec<Point>) {
     column.clear();
 }
 
-/// Points at least a third of a pixel from one another, and the last one.
+/// Points at least a third of a pixel apart, and the last one.
 fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
     let mut last = None;
@@ -345,7 +345,7 @@ fn legend(spec: &CaseSpec, trace: &Trace, strips: &[Strip]) -> Legend {
     }
 }
 
-/// The place of even sliding in the portrait, if the portrait holds it.
+/// The place of steady sliding in the portrait, if it lies inside.
 fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
     let scales: [Value; 2] = [|s| s.a, |s| s.x_dot];
     let [x, y] = scales.map(|of| scale([of].into_iter(), samples));

@@ -7,15 +7,15 @@ use super::scale::Scale;
 use crate::sweep::Field;
 use crate::sweep::input::field::{Spread, Storage};
 
-/// Relative errors beyond this are not told apart.
+/// The largest relative error on the scale.
 const LARGEST_ERROR: f64 = 1.0;
-/// A logarithmic scale reaches this far beyond its values.
+/// Factor by which a logarithmic scale extends beyond its values.
 const BEYOND: f64 = 1.3;
 
-/// The scale of the finite values of a field, as it is asked for.
+/// The scale of the finite values of a field, as requested.
 ///
 /// # Errors
-/// When an option does not fit the field or its values.
+/// When an option does not suit the field or its values.
 pub(super) fn asked(
     field: Field,
     values: &[f64],
@@ -46,7 +46,7 @@ pub(super) fn asked(
     })
 }
 
-/// The scale of these values, all of them finite.
+/// The default scale of these values, all of which are finite.
 pub(super) fn by_default(field: Field, values: &[f64]) -> Scale {
     let finite = || values.iter().copied();
     let (mut low, mut high) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));

@@ -1,4 +1,4 @@
-//! What of a map is shown: the axes of the plane, and the values along the others.
+//! The part of a map that is shown: the axes of the plane, and the values along the others.
 
 use super::error::PictureError;
 use super::speed;
@@ -10,7 +10,7 @@ use crate::sweep::input::axis::nearest;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::units::Units;
 
-/// More panels, or more colours, than this are not told apart.
+/// The most panels, or colours, that can be told apart.
 pub(super) const MOST_PANELS: usize = 12;
 
 /// The part of a map that a picture shows.
@@ -24,15 +24,15 @@ pub(super) struct View {
     pub along: Option<usize>,
     /// For each panel an index along every axis; 0 along the plane's.
     pub panels: Vec<Vec<usize>>,
-    /// How many panels there would be if all were shown.
+    /// How many panels there would be without the limit.
     pub of: usize,
 }
 
-/// Values asked for along one axis, as indices.
+/// Requested values along one axis, as indices.
 type Asked = Option<Vec<usize>>;
 
 impl View {
-    /// The view of `map` at the values `at` (the nearest on their axes) of as many axes.
+    /// The view of `map` at the values `at`, each replaced by the nearest one on its axis.
     pub(super) fn new(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Self, PictureError> {
         let asked = asked(map, at)?;
         let free: Vec<usize> = (0..map.axes().len())
@@ -55,7 +55,7 @@ impl View {
         let outside = |a: &usize| *a != x && Some(*a) != y;
         let several = several(map, &asked)?;
         let along = several.or_else(|| free.iter().copied().find(outside));
-        // A line plot shows one line unless more are asked for.
+        // A line plot shows one line unless several are requested.
         let along = along.filter(|_| y.is_some() || several.is_some());
         let all: Vec<usize> = match along {
             Some(axis) => match &asked[axis] {
@@ -97,7 +97,7 @@ impl View {
         self.y.is_some_and(upright) || self.is_turned(map)
     }
 
-    /// True if this is the plane of the curves with their second parameter from left to right.
+    /// Whether this is the plane of the curves with their second parameter from left to right.
     pub(super) fn is_turned(&self, map: &MapFile) -> bool {
         self.y
             .is_some_and(|y| map.boundary_plane() == Some((y, self.x)))
@@ -118,13 +118,13 @@ impl View {
             .collect()
     }
 
-    /// Whether a panel shows the plane at these values of the axes outside of it.
+    /// Whether a panel shows the plane at these values of the axes outside it.
     pub(super) fn shows(&self, map: &MapFile, outer: &[f64]) -> bool {
         let mut panels = self.panels.iter();
         panels.any(|panel| self.outer_values(map, panel) == outer)
     }
 
-    /// What tells a panel from the others, "μ′ = −0.3"; none for a single panel.
+    /// What distinguishes a panel from the others, "μ′ = −0.3"; none for a single panel.
     pub(super) fn heading(&self, map: &MapFile, panel: &[usize]) -> Option<Rich> {
         let axis = self.along?;
         let MapAxis {
@@ -135,7 +135,7 @@ impl View {
         Some(assignment(parameter, values[panel[axis]], unit))
     }
 
-    /// What all panels have in common, and how many are left out.
+    /// The common values of all panels, and how many panels are left out.
     pub(super) fn notes(&self, map: &MapFile) -> Vec<Rich> {
         let mut notes = Vec::new();
         if let Some(axis) = self.along.filter(|_| self.of > self.panels.len()) {
@@ -149,8 +149,8 @@ impl View {
             }
         }
         let units = map.units();
-        // Only what differs from the default, and the gains, since a gain of 0 means no such
-        // control.
+        // Only values that differ from the default, and the gains: a gain of 0 means that there is
+        // no such control.
         for (parameter, value) in map.scalars() {
             let gain = matches!(
                 parameter,
@@ -195,7 +195,7 @@ fn asked(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Vec<Asked>, PictureErr
     Ok(asked)
 }
 
-/// The axis for which several values are asked.
+/// The axis for which several values are requested.
 fn several(map: &MapFile, asked: &[Asked]) -> Result<Option<usize>, PictureError> {
     let has_several = |a: &usize| asked[*a].as_ref().is_some_and(|i| i.len() > 1);
     let mut axes = (0..asked.len()).filter(has_several);

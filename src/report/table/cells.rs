@@ -12,15 +12,15 @@ use crate::store::{MapAxis, MapFile};
 use crate::sweep::Field;
 use crate::sweep::engine::STATUS_FILL;
 
-/// Texts of an axis of more values are made again for each cell.
+/// The most values of an axis whose texts are kept; for more, texts are made again for each cell.
 const MOST_TEXTS: usize = 1 << 16;
 
-/// Writes the cells of a map, those of `held` axes at these indices alone, one row each, the last
-/// axis fastest: all axes, `fields`, the status. Returns the number of rows. Few cells are in
-/// memory at once. Kinds are words, counts and the status whole numbers.
+/// Writes the cells of a map, one row each, the last axis fastest: all axes, `fields`, the status.
+/// Axes with an index in `held` are written at that index alone. Returns the number of rows. Few
+/// cells are in memory at once. Kinds are words; counts and the status are whole numbers.
 ///
 /// # Errors
-/// When the map cannot be read or the text not be written, and once `stop` is set.
+/// When the map cannot be read or the text cannot be written, and once `stop` is set.
 pub fn write_cells(
     map: &MapFile,
     (fields, held): (&[Field], &[Option<usize>]),
@@ -38,7 +38,7 @@ pub fn write_cells(
     table.finish()
 }
 
-/// What is said of a map before its columns.
+/// The description of a map for the comments.
 pub(super) fn about(map: &MapFile) -> About {
     let held = |name| map.root_text(name);
     let start = map
@@ -80,7 +80,7 @@ fn columns(map: &MapFile, fields: &[Field]) -> Vec<Column> {
         .collect()
 }
 
-/// The values of an axis, as texts where these are few.
+/// The values of an axis, as texts if there are few.
 struct AxisTexts<'a> {
     values: &'a [f64],
     texts: Vec<String>,
@@ -122,7 +122,7 @@ fn write_block(
 ) -> Result<(), TableError> {
     let mut index = block.first.clone();
     for cell in 0..block.status.len() {
-        // A flag that is looked at now and then.
+        // The flag is checked only now and then.
         if cell.is_multiple_of(1024) && stop.load(Ordering::Relaxed) {
             return Err(TableError::Stopped);
         }

@@ -12,13 +12,13 @@ use crate::store::map_file::MapCurve;
 use crate::store::schema::DEGREE_OF_STABILITY;
 use crate::store::{MapAxis, MapFile};
 
-/// Writes the curves of a map, those of `held` axes outside their planes at these indices alone:
-/// the number of the curve, the axes outside its plane, its degree of stability, branch, direction,
-/// stable side and kind, then the vertex. Returns the number of rows; none where the map holds no
-/// curves.
+/// Writes the curves of a map, one row per vertex: the number of the curve, the axes outside its
+/// plane, its degree of stability, branch, direction, stable side and kind, then the vertex. Axes
+/// outside the plane with an index in `held` are written at that index alone. Returns the number of
+/// rows; none for a map without curves.
 ///
 /// # Errors
-/// When the map cannot be read or the text not be written, and once `stop` is set.
+/// When the map cannot be read or the text cannot be written, and once `stop` is set.
 pub fn write_curves(
     map: &MapFile,
     held: &[Option<usize>],

@@ -1,13 +1,13 @@
 //! Tables as text (CSV): one row of names, then one row for each cell, vertex, sample or event.
 //!
-//! Numbers have the fewest digits that read back as the same bits. Infinities are `inf` and `-inf`,
-//! a missing value is empty, kinds are words. Comments, where they are asked for, are lines that
+//! Numbers have the fewest digits from which the same bits are read. Infinities are `inf` and
+//! `-inf`, a missing value is empty, kinds are words. Comments are written on request: lines that
 //! begin with `#`, before the names.
 //!
 //! - `cells`: the cells of a map as rows
 //! - `curves`: the crossing curves of a map as rows, one for each vertex
 //! - `motion`: a motion as rows
-//! - `starts`: starts of motions and what became of them, as rows
+//! - `starts`: starts of motions with their outcomes, as rows
 
 mod cells;
 mod curves;
@@ -36,7 +36,7 @@ pub enum TableError {
     /// The text could not be written.
     #[error("cannot write: {0}")]
     Write(#[from] io::Error),
-    /// It was asked to stop.
+    /// It was stopped.
     #[error("stopped")]
     Stopped,
 }
@@ -53,7 +53,7 @@ impl From<csv::Error> for TableError {
 /// A column of a table.
 struct Column {
     name: String,
-    /// `1` where there is none; empty where a unit has no meaning.
+    /// `1` where there is none; empty where a unit makes no sense.
     unit: String,
     about: String,
 }
@@ -72,7 +72,7 @@ impl Column {
     }
 }
 
-/// What comments say besides the columns: texts, and values of parameters.
+/// The comments besides the columns: texts, and values of parameters.
 struct About {
     texts: Vec<(&'static str, String)>,
     fixed: Vec<(Quantity, f64)>,
@@ -80,7 +80,7 @@ struct About {
 }
 
 impl About {
-    /// The texts that there are: of a map and a trace alike.
+    /// Keeps the texts that exist; used for maps and traces.
     fn new(
         texts: impl IntoIterator<Item = (&'static str, Option<String>)>,
         fixed: Vec<(Quantity, f64)>,
@@ -106,7 +106,7 @@ struct Table<W: Write> {
 }
 
 impl<W: Write> Table<W> {
-    /// Writes comments, where there is something to say, and the names of the columns.
+    /// Writes the comments, if there are any, and the names of the columns.
     fn begin(mut out: W, about: Option<&About>, columns: &[Column]) -> Result<Self, TableError> {
         if let Some(about) = about {
             write_comments(&mut out, about, columns)?;
@@ -141,16 +141,16 @@ impl<W: Write> Table<W> {
         Ok(self.csv.write_record(None::<&[u8]>)?)
     }
 
-    /// Everything is written; the number of rows.
+    /// Completes the table; returns the number of rows.
     fn finish(mut self) -> Result<u64, TableError> {
         self.csv.flush()?;
         Ok(self.rows)
     }
 }
 
-/// A number with as many digits as tell it from all others; nothing for NaN.
+/// Writes a number with the fewest digits that distinguish it from all others; nothing for NaN.
 fn put_number(text: &mut String, value: f64) {
-    // Writing to a string does not fail.
+    // Writing to a string cannot fail.
     let _ = match value {
         f64::INFINITY => write!(text, "inf"),
         f64::NEG_INFINITY => write!(text, "-inf"),

@@ -1,4 +1,4 @@
-//! Starts of motions and what became of them, as rows.
+//! Starts of motions with their outcomes, as rows.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};

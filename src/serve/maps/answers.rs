@@ -1,4 +1,4 @@
-//! Answers about a map's cells and curves, made by the process that reads it.
+//! Answers about a map's cells and curves, made in the process that reads the map.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -16,12 +16,12 @@ use crate::sweep::Field;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 
-/// How long an answer waits for a whole window; then it has what was read so far.
+/// How long an answer waits for a complete window; after that it has what was read so far.
 const PATIENCE: Duration = Duration::from_millis(250);
 /// The most bytes of the values of a window: half as many reals.
 const MOST_BYTES: usize = MOST_PIXELS * MOST_PIXELS * 4;
 
-/// The axis of that name.
+/// The axis with this name.
 fn axis_of(facts: &Facts, name: &str) -> Result<usize, Refused> {
     let found = facts
         .axes
@@ -30,13 +30,13 @@ fn axis_of(facts: &Facts, name: &str) -> Result<usize, Refused> {
     found.ok_or_else(|| Refused::asked(format!("the map has no axis {}", shortened(name))))
 }
 
-/// What a message says of a text that may be long.
+/// A text shortened for a message.
 fn shortened(text: &str) -> String {
     let short: String = text.chars().take(40).collect();
     format!("{short:?}")
 }
 
-/// The index along each axis that `at` names; none along the others.
+/// The index along each axis that `at` names; none for the other axes.
 fn indices(facts: &Facts, at: &str) -> Result<Vec<Option<usize>>, Refused> {
     let mut found = vec![None; facts.axes.len()];
     for part in at.split(',').filter(|part| !part.is_empty()) {
@@ -64,7 +64,7 @@ fn pixels(asked: Option<usize>, points: usize) -> Result<usize, Refused> {
     }
 }
 
-/// The window that a query is about.
+/// The window described by a query.
 fn asked(facts: &Facts, query: &WindowQuery) -> Result<Asked, Refused> {
     let held = Field::from_name(&query.field).filter(|field| facts.fields.contains(field));
     let field = held.ok_or_else(|| {
@@ -109,7 +109,7 @@ fn asked(facts: &Facts, query: &WindowQuery) -> Result<Asked, Refused> {
     })
 }
 
-/// A window, as far as it was read, in two parts; `one` is held while they are put together.
+/// A window, as far as it was read, in two parts. `one` is locked while they are encoded.
 pub(super) fn window(
     look: &Look,
     query: &WindowQuery,
@@ -162,7 +162,7 @@ fn encoded(
     arrays.parts(&head)
 }
 
-/// Where a plane lies along the axes that do not span it.
+/// The place of a plane along the axes that do not span it.
 fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<WindowAt> {
     let axes = facts.axes.iter().zip(index).enumerate();
     axes.filter(|(axis, _)| !spanned.contains(&Some(*axis)))
@@ -174,7 +174,8 @@ fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<WindowAt
         .collect()
 }
 
-/// The curves of a plane, x and y vertex by vertex; none where curves are of other planes.
+/// The curves of a plane, x and y vertex by vertex; none where the map's curves are in other
+/// planes.
 pub(super) fn curves(look: &Look, query: &CurvesQuery) -> Result<Vec<u8>, Refused> {
     let facts = look.facts();
     let (x, y) = (axis_of(facts, &query.x)?, axis_of(facts, &query.y)?);
@@ -205,7 +206,7 @@ pub(super) fn curves(look: &Look, query: &CurvesQuery) -> Result<Vec<u8>, Refuse
     arrays.behind(&head).map_err(Refused::damaged)
 }
 
-/// A number that JSON may not have.
+/// A number in a form that JSON allows.
 fn number(value: f64) -> CellValue {
     match value {
         f64::INFINITY => CellValue::Infinite("inf"),
@@ -215,7 +216,7 @@ fn number(value: f64) -> CellValue {
     }
 }
 
-/// One cell: what it holds, and what can be asked there.
+/// One cell: its values, and the requests about it.
 pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<MapCell, Refused> {
     let facts = look.facts();
     let index: Option<Vec<usize>> = indices(facts, &query.at)?.into_iter().collect();

@@ -1,4 +1,4 @@
-//! A process that reads one map for the server: a damaged file can end it, and no more than it.
+//! A process that reads one map for the server. A damaged file can end it, but not the server.
 
 use std::io::{BufRead, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,21 +10,21 @@ use super::{answers, description};
 use crate::maps::look::Look;
 use crate::store::StoreError;
 
-/// More bytes are in no request.
+/// The most bytes of a request.
 const LONGEST_REQUEST: u64 = 1 << 16;
 
-/// The map, opened when it is first asked for.
+/// The map, opened by the first request.
 struct Opened {
     path: PathBuf,
     look: OnceLock<Result<Look, Refused>>,
-    /// One window is put together at a time.
+    /// Only one window is encoded at a time.
     one: Mutex<()>,
 }
 
-/// Answers requests that come line by line, until there are no more.
+/// Answers requests, one per line, until the input ends.
 ///
 /// # Errors
-/// When a request cannot be read, or is none.
+/// When a line cannot be read, or is no request.
 pub fn read_map<W: Write + Send + 'static>(
     path: &Path,
     requests: impl BufRead,
@@ -59,7 +59,7 @@ pub fn read_map<W: Write + Send + 'static>(
                 (Frame { kind, bytes }, Vec::new())
             });
             let mut out = answers.lock().unwrap_or_else(PoisonError::into_inner);
-            // Where nobody reads any more, the requests end too.
+            // If nobody reads the answers, the requests end too.
             drop(frame.write(&more, request.number, &mut *out));
         });
     }
@@ -71,7 +71,7 @@ impl Opened {
         self.look.get_or_init(open).as_ref().map_err(Clone::clone)
     }
 
-    /// An answer, and what it goes on with.
+    /// An answer, in two parts.
     fn answer(&self, ask: &Ask) -> Result<(Frame, Vec<u8>), Refused> {
         let look = self.look()?;
         if look.refresh().is_err() {
@@ -92,7 +92,7 @@ impl Opened {
     }
 }
 
-/// An answer that can be sent.
+/// Checks that an answer is short enough to send.
 fn fitting((frame, more): (Frame, Vec<u8>)) -> Result<(Frame, Vec<u8>), Refused> {
     fits(frame.bytes.len() + more.len())?;
     Ok((frame, more))
@@ -107,7 +107,7 @@ fn json(value: &impl serde::Serialize) -> Result<Frame, Refused> {
     Ok(frame(Kind::Json, bytes))
 }
 
-/// Why a map cannot be opened, without the folders that it is in.
+/// Why a map cannot be opened, without naming its folders.
 fn refused(error: &StoreError) -> Refused {
     Refused::damaged(match error {
         StoreError::NotAMap { why, .. } => format!("it is not a map of slipmap: {why}"),

@@ -1,5 +1,5 @@
-//! What is answered about maps: the same types are written, read where they come from a process,
-//! and described.
+//! The types of answers about maps. They are written and described by the same definitions, and
+//! read where they come from a process.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a map tells of itself besides its cells.
+//! The description of a map, besides its cells.
 
 use super::described::{self, MapAxisEnds, MapField, MapFlag, MapScalar, MapSummary, MapTold};
 use crate::explore::known::KnownField;
@@ -42,7 +42,7 @@ fn title(look: &Look) -> String {
     )
 }
 
-/// What a list tells of it.
+/// The description of a map for the list.
 pub(super) fn summary(look: &Look) -> MapSummary {
     let facts = look.facts();
     let fields = facts.fields.iter().map(|field| field.name().into());
@@ -55,7 +55,7 @@ pub(super) fn summary(look: &Look) -> MapSummary {
     }
 }
 
-/// What there is to know of it besides its cells.
+/// The full description of a map, besides its cells.
 pub(super) fn description(look: &Look) -> MapTold {
     let facts = look.facts();
     let (version, cells_done) = look.version();

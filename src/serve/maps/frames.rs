@@ -1,5 +1,5 @@
-//! What passes between the server and a process that reads a map: requests as lines of JSON,
-//! answers as frames.
+//! Messages between the server and a process that reads a map: requests as lines of JSON, answers
+//! as frames.
 //!
 //! ```text
 //! number of the request, u64 | kind, u8 | length, u32 | so many bytes      all little-endian
@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-/// No answer is longer.
+/// The most bytes of an answer.
 const LONGEST: u32 = 64 << 20;
 
 /// The status of answers about a damaged map.
@@ -19,19 +19,19 @@ const DAMAGED: u16 = 502;
 /// The most pixels of a window each way.
 pub(super) const MOST_PIXELS: usize = 2048;
 
-/// A request, by its number.
+/// A request with its number.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Request {
     pub number: u64,
     pub ask: Ask,
 }
 
-/// What is asked of a map.
+/// A question about a map.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) enum Ask {
-    /// What a list tells of it.
+    /// Its description for a list.
     Summary,
-    /// What there is to know of it besides its cells.
+    /// Its full description, besides its cells.
     Description,
     /// Its cells in a plane, as pixels.
     Window(WindowQuery),
@@ -106,15 +106,15 @@ pub(super) struct CellQuery {
     pub at: String,
 }
 
-/// What an answer is.
+/// The kind of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Json,
     Text,
     Bytes,
-    /// Why there is none, in JSON: [`Refused`].
+    /// Why there is no answer, in JSON: [`Refused`].
     Problem,
-    /// The map is another one by now: it is to be asked of a new process.
+    /// Another map has taken the place of this one; a new process has to be asked.
     OtherMap,
 }
 
@@ -133,26 +133,26 @@ impl Kind {
 pub(super) struct Refused {
     /// The status of the answer.
     pub status: u16,
-    /// In words.
+    /// Why, in words.
     pub detail: String,
 }
 
 impl Refused {
-    /// The map does not hold what is asked for.
+    /// The map lacks what was requested.
     pub(super) fn asked(detail: impl Into<String>) -> Self {
         let status = 422;
         let detail = detail.into();
         Self { status, detail }
     }
 
-    /// It cannot be read now, whatever the file holds.
+    /// The map cannot be read now, whatever the file contains.
     pub(super) fn for_now(detail: impl Into<String>) -> Self {
         let status = 503;
         let detail = detail.into();
         Self { status, detail }
     }
 
-    /// Whether it says something of the file, which holds as long as that stays as it is.
+    /// Whether the refusal is about the file, and so holds until the file changes.
     pub(super) fn is_of_file(&self) -> bool {
         self.status == DAMAGED
     }
@@ -166,7 +166,7 @@ impl Refused {
     }
 }
 
-/// Whether an answer of so many bytes can be sent; its asker may ask for less.
+/// Checks that an answer of `bytes` bytes can be sent. If not, the client may ask for less.
 pub(super) fn fits(bytes: usize) -> Result<(), Refused> {
     match bytes <= LONGEST as usize {
         true => Ok(()),
@@ -186,7 +186,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Writes an answer; its bytes may go on with `more`.
+    /// Writes an answer; `more` follows its bytes.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -211,7 +211,7 @@ impl Frame {
         let kind = Kind::ALL.into_iter().find(|&kind| kind as u8 == head[8]);
         let odd = || io::Error::from(io::ErrorKind::InvalidData);
         let kind = kind.filter(|_| length <= LONGEST).ok_or_else(odd)?;
-        // Room alone takes no memory, however many are promised.
+        // Read without reserving memory for the announced length.
         let mut bytes = Vec::new();
         bytes
             .try_reserve_exact(length as usize)

@@ -1,4 +1,4 @@
-//! The list of maps below a folder, each with what a process of its own told of it.
+//! The list of maps below a folder, each with the summary from a process of its own.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -17,28 +17,29 @@ use super::scan::{Found, Mark, Scanned, scan};
 const BETWEEN_SCANS: Duration = Duration::from_secs(1);
 /// How long a list waits for maps that are not known yet.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// After how many tries the time between them grows no more.
+/// The number of tries after which the time between them stops growing.
 const MOST_DOUBLED: u32 = 5;
-/// Maps that are asked at a time.
+/// The most maps that are asked for a summary at a time.
 const MOST_PROBES: usize = 2;
 
-/// What was told of a map.
+/// What is known of a map.
 #[derive(Debug, Clone)]
 enum Told {
-    /// By its process.
+    /// The summary from its process.
     Summary(MapSummary),
     /// Why the file is no sound map.
     Damaged(String),
-    /// Why it could not be read, which tells nothing of the file; when that was, and how often.
+    /// Why it could not be read, though the file may be sound; the time of the last try, and their
+    /// number.
     Unread(String, Instant, u32),
 }
 
-/// How long things may take.
+/// Time limits.
 #[derive(Debug, Clone, Copy)]
 struct Times {
-    /// A process that takes longer to tell of a map is ended.
+    /// A process that takes longer for a summary is ended.
     probe: Duration,
-    /// What could not be read is tried again after so long, and each time twice as long.
+    /// The time before a map that could not be read is tried again; it doubles with each try.
     again: Duration,
 }
 
@@ -52,7 +53,7 @@ impl Default for Times {
 }
 
 impl Told {
-    /// Whether it holds as long as the file stays as it is.
+    /// Whether it is still valid, as long as the file does not change.
     fn holds(&self, times: Times) -> bool {
         match self {
             Self::Summary(_) | Self::Damaged(_) => true,
@@ -67,9 +68,9 @@ impl Told {
 struct Known {
     scanned: Scanned,
     at: Option<Instant>,
-    /// By id, what was there when it was told.
+    /// By id: what is known of a map, and the state of its files at that time.
     told: HashMap<String, (Mark, Told)>,
-    /// Those that are being asked.
+    /// Ids of the maps that are being asked.
     asked: HashSet<String>,
 }
 
@@ -104,7 +105,7 @@ impl List {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Looks at the names below the folder, unless that was just done.
+    /// Scans the names below the folder, unless that was just done.
     async fn scan(&self) {
         let _one = self.scanning.lock().await;
         let at = self.known().at;
@@ -120,7 +121,7 @@ impl List {
         known.told.retain(|id, _| there.contains(id));
     }
 
-    /// The map of an id.
+    /// The map with an id.
     pub(super) async fn find(&self, id: &str) -> Option<Found> {
         self.scan().await;
         let known = self.known();
@@ -148,7 +149,7 @@ impl List {
         self.told()
     }
 
-    /// Asks processes about maps that are new or have changed, and says how many these are.
+    /// Asks processes about maps that are new or have changed; returns how many.
     fn ask_unknown(self: &Arc<Self>) -> usize {
         let mut known = self.known();
         let Known {
@@ -188,7 +189,7 @@ impl List {
         self.news.notify_waiters();
     }
 
-    /// A place for a process that reads `path`, unless one that was told to end is there for long.
+    /// A place for a process that reads `path`; none if an ended process keeps it for too long.
     async fn place(&self, path: &Path) -> Option<Place> {
         let until = tokio::time::Instant::now() + self.times.probe;
         loop {
@@ -231,7 +232,7 @@ impl List {
         }
     }
 
-    /// The map of an id was read just now, whatever was said of it before.
+    /// Records that the map with this id could be read, whatever was known of it before.
     pub(super) fn was_read(&self, id: &str) {
         let mut known = self.known();
         if !matches!(known.told.get(id), Some((_, Told::Summary(_)))) {
@@ -255,7 +256,7 @@ impl List {
     }
 }
 
-/// The state of a map, and why it is damaged or unread where it is.
+/// The state of a map, and why it is damaged or unread, if it is.
 fn state(found: &Found, told: Option<&Told>) -> (&'static str, Option<String>) {
     if let Some(odd) = found.odd {
         return ("damaged", Some(odd.into()));
@@ -296,7 +297,7 @@ mod tests {
     use super::super::test_reader::{self, hang};
     use super::*;
 
-    /// A process that is over its time says nothing of the file, which is tried again.
+    /// If a process exceeds its time, the file may still be sound; it is tried again.
     #[test]
     fn what_could_not_be_read_is_tried_again() {
         let folder = tempfile::tempdir().unwrap();

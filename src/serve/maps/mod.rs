@@ -6,19 +6,19 @@
 //!          in that process: [child] → [description], [answers] → maps::look
 //! ```
 //!
-//! This process opens no map: a damaged one can end who reads it.
+//! The server itself opens no map, because a damaged one can end the process that reads it.
 //!
 //! - `answers`: windows, curves and cells as answers
-//! - `child`: its own side
-//! - `described`: what is answered about maps, described where it is defined
-//! - `description`: what a map tells of itself besides its cells
-//! - `frames`: what passes between both
-//! - `list`: what is known of each, told by a process of its own
-//! - `places`: which processes there are at a time
-//! - `process`: the server's side of such a process
-//! - `readers`: what is asked of maps
-//! - `routes`: what is answered about maps at which address
-//! - `scan`: what may be a map below a folder, by names alone
+//! - `child`: the side of the process that reads a map
+//! - `described`: the types of answers about maps, with their descriptions
+//! - `description`: the description of a map, besides its cells
+//! - `frames`: messages between the server and the process
+//! - `list`: the maps of a folder, each with the summary from a process of its own
+//! - `places`: the processes that may run at a time
+//! - `process`: the server's side of a process that reads a map
+//! - `readers`: asks the processes that read maps
+//! - `routes`: the addresses of requests about maps
+//! - `scan`: the files below a folder that may be maps, by their names alone
 //! - `test_reader`: a process for tests that can be held
 
 mod answers;

@@ -1,4 +1,4 @@
-//! Which processes read maps: few at a time, those that were asked last.
+//! The processes that read maps: only a few at a time, those that were asked last.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,12 @@ use tokio::sync::{Notify, Semaphore};
 
 use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 
-/// Maps that are read at a time.
+/// The most maps that are read at a time.
 const MOST_READERS: usize = 2;
-/// A place is waited for so long.
+/// The longest wait for a place.
 const FOR_PLACE: Duration = Duration::from_secs(10);
 
-/// A process that is given up has mostly ended by then.
+/// The time after which a process that was told to end has usually ended.
 const TO_END: Duration = Duration::from_secs(1);
 
 /// The processes that read maps.
@@ -24,13 +24,13 @@ pub(super) struct Places {
     readers: Mutex<Readers>,
     free: Arc<Semaphore>,
     held: Held,
-    /// A place may be free, or another map's process is there.
+    /// Signals that a place may be free, or that the process of another map has been started.
     news: Arc<Notify>,
 }
 
 #[derive(Debug, Default)]
 struct Readers {
-    /// The one that was asked last comes last.
+    /// In the order in which they were last asked.
     there: Vec<(PathBuf, Arc<Reader>)>,
     /// Maps whose processes are being started.
     starting: HashSet<PathBuf>,
@@ -40,11 +40,11 @@ struct Readers {
 #[derive(Debug)]
 pub(super) struct InUse {
     pub reader: Arc<Reader>,
-    /// Behind the process, which is given back first.
+    /// Dropped after the reader, which is given back first.
     _told: Told,
 }
 
-/// Tells those who wait for a place, once it is dropped.
+/// When dropped, it signals those who wait for a place.
 #[derive(Debug)]
 struct Told(Arc<Notify>);
 
@@ -65,8 +65,8 @@ impl Readers {
         Some(reader)
     }
 
-    /// Ends a process to make room for another map: an idle one, or else, where the limit is
-    /// reached, the one that was asked longest ago, once it has answered.
+    /// Makes room for another map if the limit is reached or `taken` is set. It ends an idle
+    /// process or, at the limit, the one that was asked longest ago, after it has answered.
     fn make_room(&mut self, taken: bool) {
         let full = self.there.len() + self.starting.len() >= MOST_READERS;
         let idle = |(_, reader): &(PathBuf, Arc<Reader>)| Arc::strong_count(reader) == 1;
@@ -93,7 +93,7 @@ impl Places {
         self.readers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The process that reads the map at `path`; a new one where there is a place for it.
+    /// The process that reads the map at `path`; a new one if there is a place for it.
     pub(super) async fn reader(self: &Arc<Self>, path: &Path) -> Result<InUse, Trouble> {
         let begun = tokio::time::Instant::now();
         loop {
@@ -120,8 +120,8 @@ impl Places {
         }
     }
 
-    /// A place for a process of this map, unless there is none, or one is being started. `late`:
-    /// what was given up has not ended in time, so another one is.
+    /// A place for a process of this map; none if there is no place, or one is being started.
+    /// `late`: a process that was told to end has not ended in time, so another one is ended.
     fn begin(&self, path: &Path, late: bool) -> Option<Place> {
         let mut readers = self.readers();
         if readers.starting.contains(path) {
@@ -134,7 +134,7 @@ impl Places {
         Some(place)
     }
 
-    /// Starts a process and keeps it, even if whoever asked for it has gone meanwhile.
+    /// Starts a process and keeps it, even if the client has gone meanwhile.
     async fn start(self: &Arc<Self>, path: &Path, place: Place) -> Result<Arc<Reader>, Trouble> {
         let (places, path) = (Arc::clone(self), path.to_owned());
         let starting = tokio::task::spawn_blocking(move || {
@@ -151,7 +151,7 @@ impl Places {
         starting.await.unwrap_or(Err(Trouble::NotStarted))
     }
 
-    /// The next request of its map has another process.
+    /// Forgets a process: the next request about its map goes to another one.
     pub(super) fn forget(&self, reader: &Arc<Reader>) {
         let mut readers = self.readers();
         readers

@@ -11,13 +11,12 @@ use tokio::sync::{Notify, OwnedSemaphorePermit, oneshot};
 
 use super::frames::{Ask, Frame, Request};
 
-/// Requests that wait for one process; a pipe holds as many, so writing them never waits.
+/// The most requests that wait for one process. A pipe has room for them, so writing never blocks.
 const MOST_WAITING: usize = 16;
 /// The longest request.
 const LONGEST_REQUEST: usize = 3000;
 
-/// How to start a process that reads a map: a program and its arguments, the path comes behind
-/// them.
+/// How to start a process that reads a map: a program and its arguments, followed by the path.
 #[derive(Debug, Clone)]
 pub struct ReaderCommand {
     /// The program.
@@ -26,8 +25,8 @@ pub struct ReaderCommand {
     pub arguments: Vec<String>,
 }
 
-/// What a process takes until the system has done with it, also where that takes long after it was
-/// told to end.
+/// The place of a process. It stays taken until the system has ended the process, even if that
+/// takes long.
 #[derive(Debug)]
 pub(super) struct Place {
     permit: Option<OwnedSemaphorePermit>,
@@ -36,13 +35,14 @@ pub(super) struct Place {
     freed: Arc<Notify>,
 }
 
-/// The files whose processes the system has not done with.
+/// The files of the processes that the system has not ended yet.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Held(Arc<Mutex<HashSet<PathBuf>>>);
 
 impl Held {
-    /// A place for a process that reads `path`, unless there is one still: a file that processes
-    /// hang on is not to take the places of others. Those who wait hear of it once it is free.
+    /// A place for a process that reads `path`; none while there is still one. A file on which
+    /// processes hang must not take the places of others. Waiting requests are signalled when the
+    /// place is free.
     pub(super) fn place(
         &self,
         path: &Path,
@@ -74,13 +74,13 @@ pub(super) enum Trouble {
     NotStarted,
     /// It ended before it answered.
     Ended,
-    /// It took too long, and was ended.
+    /// It took too long and was ended.
     TooLong,
-    /// Others wait already.
+    /// Too many requests wait already.
     Busy,
     /// Every place for a process is taken by other maps.
     NoPlace,
-    /// No map is asked for that much.
+    /// The request is too long.
     LongRequest,
 }
 
@@ -91,7 +91,7 @@ struct Waiting {
     ended: bool,
 }
 
-/// A process, until somebody waits for its end.
+/// A process, until a thread waits for its end.
 type Running = Arc<Mutex<Option<Child>>>;
 
 /// A process that reads a map. It ends when this is dropped.
@@ -107,7 +107,7 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Reader {
-    /// Starts a process for the map at `path`, which the system may take long for.
+    /// Starts a process for the map at `path`; the system may take long for this.
     pub(super) fn start(
         command: &ReaderCommand,
         path: &Path,
@@ -116,7 +116,7 @@ impl Reader {
         let mut child = Command::new(&command.program)
             .args(&command.arguments)
             .arg(path)
-            // The GNU library would keep what was freed, for each thread on its own.
+            // The GNU library would keep freed memory, separately for each thread.
             .envs([
                 ("MALLOC_ARENA_MAX", "2"),
                 ("MALLOC_MMAP_THRESHOLD_", "4194304"),
@@ -137,8 +137,8 @@ impl Reader {
             waiting,
         };
         let (of_thread, waiting) = (Arc::clone(&child), Arc::clone(&reader.waiting));
-        // Where no thread can be started, the process is waited for here; it keeps its place so
-        // long.
+        // If no thread can be started, the process is waited for here and keeps its place until
+        // then.
         let place = Arc::new(Mutex::new(Some(place)));
         let kept = Arc::clone(&place);
         let listening = std::thread::Builder::new().stack_size(1 << 17);
@@ -154,19 +154,19 @@ impl Reader {
         Ok(reader)
     }
 
-    /// Whether it has ended.
+    /// Whether the process has ended.
     pub(super) fn has_ended(&self) -> bool {
         locked(&self.waiting).ended
     }
 
-    /// Tells it to end. Who listens to it waits until it has.
+    /// Tells the process to end. The listening thread waits until it has.
     fn end(&self) {
         if let Some(child) = &mut *locked(&self.child) {
             drop(child.kill());
         }
     }
 
-    /// Its answer. One that does not answer within `patience` is ended.
+    /// Asks the process. If it does not answer within `patience`, it is ended.
     pub(super) async fn ask(&self, ask: Ask, patience: Duration) -> Result<Frame, Trouble> {
         let answer = self.send(ask)?;
         match tokio::time::timeout(patience, answer).await {
@@ -215,7 +215,7 @@ impl Drop for Reader {
     }
 }
 
-/// Waits until a process that says nothing more has ended, with no lock held.
+/// Waits, without holding a lock, until a process that sends no more has ended.
 fn wait_for(child: &Running) {
     let child = locked(child).take();
     if let Some(mut child) = child {
@@ -224,12 +224,12 @@ fn wait_for(child: &Running) {
     }
 }
 
-/// Hands answers to who waits for them, until there are no more.
+/// Passes answers to those who wait for them, until there are no more.
 fn listen(answers: ChildStdout, waiting: &Mutex<Waiting>) {
     let mut answers = BufReader::with_capacity(1 << 16, answers);
     while let Ok((number, frame)) = Frame::read(&mut answers) {
         if let Some(asker) = locked(waiting).answers.remove(&number) {
-            // Where nobody waits any more, nobody is told.
+            // If nobody waits any more, the answer is dropped.
             drop(asker.send(frame));
         }
     }

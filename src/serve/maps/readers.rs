@@ -1,4 +1,4 @@
-//! What is asked of maps, by the processes that read them.
+//! Requests about maps, passed to the processes that read them.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,13 +16,13 @@ use crate::serve::room::{Room, Taken};
 
 /// A process that takes longer is ended.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Megabytes of windows and curves that are asked for or sent at a time.
+/// Megabytes for all windows and curves that are requested or being sent.
 const ROOM: u32 = 32;
-/// What the curves of a plane take, unless there are very many of them.
+/// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 8 << 20;
-/// Bytes of a pixel at most: a real, its status, and its bits.
+/// The most bytes of a pixel: a real, its status, and its bits.
 const BYTES_OF_PIXEL: usize = 10;
-/// How often a map is opened anew that is another one by now.
+/// How often a map is opened again after another one has taken its place.
 const MOST_OPENED: usize = 3;
 
 /// The maps below a folder.
@@ -34,7 +34,7 @@ pub(in crate::serve) struct Maps {
 }
 
 impl Maps {
-    /// Those below `folder`.
+    /// The maps below `folder`.
     pub(in crate::serve) fn below(folder: &Path, command: ReaderCommand) -> Self {
         Self {
             list: Arc::new(List::of(folder, command.clone())),
@@ -43,7 +43,7 @@ impl Maps {
         }
     }
 
-    /// Room for the answer about a window; it is waited for while others are sent.
+    /// Takes room for the answer about a window, waiting while others are sent.
     pub(super) async fn room(&self, query: &WindowQuery) -> Result<Taken, Problem> {
         let pixels = |asked: Option<usize>| asked.unwrap_or(usize::MAX).min(MOST_PIXELS);
         let height = query.y.as_ref().map_or(1, |_| pixels(query.h));
@@ -51,12 +51,12 @@ impl Maps {
         self.room.take(bytes as u64).await
     }
 
-    /// Room for the curves of a plane.
+    /// Takes room for the curves of a plane.
     pub(super) async fn room_for_curves(&self) -> Result<Taken, Problem> {
         self.room.take(BYTES_OF_CURVES).await
     }
 
-    /// What the process that reads a map answers.
+    /// The answer of the process that reads a map.
     pub(super) async fn ask(&self, found: &Found, ask: &Ask) -> Result<Frame, Problem> {
         if let Some(odd) = found.odd {
             return Err(damaged(odd));
@@ -78,7 +78,7 @@ impl Maps {
                 Kind::Problem => {
                     let refused = refused(&frame);
                     if refused.status >= 500 {
-                        // The file may be another one the next time.
+                        // The file may have been replaced by the next request.
                         self.places.forget(reader);
                     }
                     return Err(refused.into());
@@ -94,7 +94,7 @@ impl Maps {
     }
 }
 
-/// What a process says why it does not answer.
+/// The refusal in an answer.
 pub(super) fn refused(frame: &Frame) -> Refused {
     serde_json::from_slice(&frame.bytes).unwrap_or_else(|_| Refused::damaged("it cannot be read"))
 }
@@ -158,7 +158,8 @@ mod tests {
         maps.list.all().await.maps.remove(0)
     }
 
-    /// A file that could not be read for a while is not called damaged, and a map again once it is.
+    /// A file that could not be read for a while is not listed as damaged, and is listed as a map
+    /// again once it can be read.
     #[test]
     fn what_took_too_long_is_forgotten_once_the_map_answers() {
         let folder = tempfile::tempdir().unwrap();
@@ -177,12 +178,12 @@ mod tests {
             drop(held);
             let found = maps.list.find(&told.id).await.unwrap();
             maps.ask(&found, &Ask::Description).await.unwrap();
-            // At once, long before it would be tried again.
+            // At once, long before the next try is due.
             assert_eq!(entry(&maps).await.state, "complete");
         });
     }
 
-    /// Who comes when too many wait is turned away, and the process goes on.
+    /// A request is refused when too many wait, and the process continues.
     #[test]
     fn a_busy_process_is_kept() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What is answered about maps.
+//! The addresses of requests about maps.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ enum NoMap {
 
 const ENCODED: &str = "application/octet-stream";
 
-/// The id of a map, as it stands in an address.
+/// The id of a map in an address.
 struct Id(String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Id {
@@ -76,7 +76,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
 
 type Asked<T> = Result<Query<T>, QueryRejection>;
 
-/// What a query says.
+/// The contents of a query.
 fn said<T>(query: Asked<T>) -> Result<T, Problem> {
     let said = query
         .map_err(|rejected| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, rejected.body_text()));
@@ -166,7 +166,7 @@ async fn window(
     query: Asked<WindowQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
-    // Here, since JSON would lose others on the way to the process.
+    // Checked here, because JSON would lose infinities and NaN on the way to the process.
     finite([query.x0, query.x1, query.y0, query.y1])
         .map_err(|detail| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail))?;
     let found = found(&maps, &id).await?;

@@ -1,4 +1,4 @@
-//! What may be a map below a folder: by names and what the system tells of them alone, no file is
+//! Files below a folder that may be maps, by their names and by what the system reports. No file is
 //! opened.
 
 use std::collections::BTreeMap;
@@ -12,49 +12,49 @@ use crate::store::stamp::Stamp;
 use crate::store::tiles::shards;
 use crate::sweep::plan::in_hexadecimal;
 
-/// Folders within folders that are searched.
+/// The deepest nesting of folders that are searched.
 const DEEPEST: usize = 8;
 /// The most names that a scan reads.
 const MOST_NAMES: usize = 50_000;
-/// Maps that are listed.
+/// The most maps that are listed.
 const MOST_MAPS: usize = 2000;
-/// How names of maps end.
+/// Extensions of maps.
 const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
 /// How the name of a map's folder of tiles ends.
 const TILES: &str = ".tiles";
 /// Digits of an id.
 const DIGITS: usize = 16;
 
-/// The files of a map and their states: they differ where anything has changed.
+/// The state of a map's files; it changes whenever one of them does.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Mark {
     file: Option<Stamp>,
-    /// Tile files, their bytes, and when the last came.
+    /// Number of tile files, their bytes, and the time of the last one.
     tiles: Option<(u64, u64, Option<SystemTime>)>,
 }
 
-/// What may be a map.
+/// A candidate for a map.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub id: String,
-    /// Below the folder.
+    /// Its path below the folder.
     pub name: String,
     pub path: PathBuf,
     pub mark: Mark,
-    /// A run works on it.
+    /// Whether a run works on it.
     pub running: bool,
-    /// Why it cannot be one.
+    /// Why it cannot be a map.
     pub odd: Option<&'static str>,
 }
 
 impl Found {
-    /// Bytes of it.
+    /// Number of bytes of its files.
     pub(super) fn bytes(&self) -> u64 {
         let file = self.mark.file.map_or(0, |stamp| stamp.length);
         file + self.mark.tiles.map_or(0, |(_, bytes, _)| bytes)
     }
 
-    /// When it was last written to.
+    /// Time of the last write.
     pub(super) fn modified(&self) -> Option<SystemTime> {
         let tiles = self.mark.tiles.and_then(|(.., modified)| modified);
         tiles.max(self.mark.file.and_then(|stamp| stamp.modified))
@@ -63,25 +63,25 @@ impl Found {
     /// The state of a map that can be read: complete or not.
     pub(super) fn state(&self, complete: bool) -> &'static str {
         match (self.mark.file, self.running) {
-            // Also where another one is being computed.
+            // Even while another one is being computed.
             (Some(_), _) if complete => "complete",
             (_, true) => "running",
-            // Of tiles alone no map has been made yet.
+            // There are only tiles; no map has been made yet.
             (_, false) => "interrupted",
         }
     }
 }
 
-/// What was found below a folder.
+/// The candidates below a folder.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scanned {
-    /// By name.
+    /// Sorted by name.
     pub maps: Vec<Found>,
     /// Folders that were not searched: too deep, or closed to this process.
     pub folders_skipped: u64,
     /// Links that lead out of the folder, to folders, or nowhere.
     pub links_skipped: u64,
-    /// There is more than is listed.
+    /// Whether there are more than are listed.
     pub truncated: bool,
 }
 
@@ -92,7 +92,7 @@ struct Search<'a> {
     names: usize,
 }
 
-/// What may be maps below `root`, which is an absolute path without links.
+/// The candidates below `root`, an absolute path without links.
 pub(super) fn scan(root: &Path) -> Scanned {
     let mut search = Search {
         root,
@@ -136,7 +136,7 @@ impl Search<'_> {
         }
     }
 
-    /// Takes in a name; a folder that is to be searched comes back.
+    /// Adds an entry of a folder. Returns it if it is a folder to search.
     fn entry(&mut self, entry: &DirEntry) -> Option<PathBuf> {
         let (path, kind) = (entry.path(), entry.file_type().ok()?);
         let name = entry.file_name();
@@ -178,7 +178,7 @@ impl Search<'_> {
     }
 }
 
-/// The id of a map by its path below the folder.
+/// The id of a map, from its path below the folder.
 fn id_of(relative: &Path) -> String {
     let mut hash = Sha256::new();
     hash.update(relative.as_os_str().as_encoded_bytes());
@@ -187,7 +187,7 @@ fn id_of(relative: &Path) -> String {
     id
 }
 
-/// The files of a map as the system sees them; none where they are gone again.
+/// The files of a map as the system reports them; none where they have gone.
 fn look(root: &Path, path: PathBuf, odd: Option<&'static str>) -> Option<Found> {
     let relative = path.strip_prefix(root).ok()?;
     let folders = shards::present(&path).unwrap_or_default();
@@ -210,7 +210,7 @@ fn look(root: &Path, path: PathBuf, odd: Option<&'static str>) -> Option<Found> 
     })
 }
 
-/// Files of a folder, their bytes, and when the last of them was written.
+/// Number of files in a folder, their bytes, and the time of the last write.
 fn tiles_in(folder: &Path) -> (u64, u64, Option<SystemTime>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let entries = entries.filter_map(|entry| entry.metadata().ok());

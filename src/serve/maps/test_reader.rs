@@ -1,11 +1,11 @@
-//! A process for tests that answers as one that reads a map does, unless it is held by a file.
+//! A process for tests that answers like one that reads a map, unless a file holds it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::process::ReaderCommand;
 
-/// Answers every request with the same map, in frames of `frames.rs`; notes that it was started.
+/// Answers every request with the same map, in frames of `frames.rs`; records that it was started.
 const SCRIPT: &str = r#"
 echo >> "$1.started"
 text='{"title":"","cells":4,"cells_done":4,"axes":[],"fields":[]}'
@@ -37,7 +37,7 @@ pub(super) fn started(path: &Path) -> usize {
     told.unwrap_or_default().lines().count()
 }
 
-/// Its processes do not answer as long as this is there.
+/// While this exists, the processes do not answer.
 pub(super) struct Held(PathBuf);
 
 pub(super) fn hang(path: &Path) -> Held {

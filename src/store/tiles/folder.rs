@@ -17,9 +17,9 @@ use super::record::{Digest, Record, RecordEncoder};
 use crate::sweep::engine::Sink;
 use crate::sweep::plan::pieces::{Piece, Pieces};
 
-/// A file is written that often, unless asked for otherwise.
+/// The usual time between two files.
 pub const BETWEEN_FILES: Duration = Duration::from_secs(2);
-/// Bytes that wait at most before a file is written.
+/// The most bytes that wait before a file is written.
 const BYTES_OF_A_FILE: usize = 16 << 20;
 
 const LOCK: &str = "lock";
@@ -34,7 +34,7 @@ const DIGITS: usize = 10;
 pub struct TileFolder {
     reader: TileReader,
     pieces: Pieces,
-    /// Number of the next file; none before had it.
+    /// Number of the next file, larger than any before.
     next_number: u64,
     waiting: Vec<Record>,
     waiting_bytes: usize,
@@ -45,12 +45,12 @@ pub struct TileFolder {
 }
 
 impl TileFolder {
-    /// Claims `path` for the tiles that `manifest` describes, checks what is there, and says what
-    /// of it was damaged. Damaged pieces are no longer in the folder afterwards; sound ones are
-    /// kept. A lock left by a run that died does not block.
+    /// Claims `path` for the tiles that `manifest` describes, checks its contents, and reports what
+    /// was damaged. Damaged pieces are removed from the folder; sound ones are kept. A lock left by
+    /// a run that died does not block.
     ///
     /// # Errors
-    /// When it is to stop, another run works there, the folder or its manifest belong to something
+    /// When `stop` is set, another run works there, the folder or its manifest belongs to something
     /// else, or the system refuses.
     pub fn claim(
         path: &Path,
@@ -61,7 +61,7 @@ impl TileFolder {
         make(path)?;
         refuse_foreign(path)?;
         let lock = lock(path)?;
-        // What a run left that died: new files take these names.
+        // Leftovers of a run that died; new files take these names.
         for part in listed(path, is_part)? {
             remove(&part)?;
         }
@@ -82,15 +82,15 @@ impl TileFolder {
         Ok((folder, damaged))
     }
 
-    /// A file is to be written that often while pieces come, instead of every two seconds.
+    /// Sets the time between two files, instead of two seconds.
     pub fn save_every(&mut self, time: Duration) {
         self.save_every = time;
     }
 
-    /// Looks at every byte in the folder again.
+    /// Checks every byte in the folder again.
     ///
     /// # Errors
-    /// When it is to stop, or the system refuses.
+    /// When `stop` is set, or the system refuses.
     pub fn scan(&mut self, stop: &AtomicBool) -> Result<Vec<Damaged>, StoreError> {
         let (path, layout) = (self.reader.path().to_owned(), *self.reader.layout());
         let (reader, damaged) = TileReader::of(&path, layout, self.pieces, stop)?;
@@ -99,7 +99,7 @@ impl TileFolder {
         Ok(damaged)
     }
 
-    /// Writes the sound pieces of damaged files anew, then removes these.
+    /// Writes the sound pieces of damaged files to new files, then removes the damaged ones.
     fn mend(&mut self, damaged: &[Damaged]) -> Result<(), StoreError> {
         for broken in damaged {
             self.waiting.extend(self.reader.records_of(&broken.file)?);
@@ -108,7 +108,7 @@ impl TileFolder {
         damaged.iter().try_for_each(|broken| remove(&broken.file))
     }
 
-    /// The pieces that are there.
+    /// The pieces in the folder.
     pub fn done(&self) -> impl Iterator<Item = Piece> {
         self.reader.done()
     }
@@ -116,7 +116,7 @@ impl TileFolder {
     /// Removes everything that slipmap put there, and the folder.
     ///
     /// # Errors
-    /// When the system refuses, also because something else is in the folder.
+    /// When the system refuses, for instance because something else is in the folder.
     pub fn remove(self) -> Result<(), StoreError> {
         clear_claimed(self.reader.path())
     }
@@ -191,8 +191,8 @@ pub(super) fn is_bare(folder: &Path) -> bool {
     !folder.join(manifest::NAME).exists() && !is_claimed(folder)
 }
 
-/// Writes the manifest where there is none; else compares. One that is damaged is written anew, and
-/// told, unless a tile file says that the folder belongs to something else.
+/// Writes the manifest where there is none; else compares it. A damaged manifest is rewritten and
+/// reported, unless a tile file says that the folder belongs to something else.
 fn check_manifest(folder: &Path, asked: &Manifest) -> Result<Option<Damaged>, StoreError> {
     let path = folder.join(manifest::NAME);
     if !path.exists() {
@@ -223,13 +223,13 @@ fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), StoreError> 
 pub(super) enum Belongs {
     /// No file says anything.
     Nowhere,
-    /// Some belong to what is asked for, none to something else.
+    /// Some files belong to what is asked for, none to anything else.
     Here,
-    /// A file is sound and of something else.
+    /// A file is sound and belongs to something else.
     Elsewhere,
 }
 
-/// What the tile files of a folder belong to, where its manifest cannot be asked.
+/// What the tile files of a folder belong to, for a folder whose manifest is unreadable.
 pub(super) fn belongs(folder: &Path, layout: &Digest) -> Result<Belongs, StoreError> {
     let mut found = Belongs::Nowhere;
     for file in listed(folder, is_tile_file)? {
@@ -242,14 +242,14 @@ pub(super) fn belongs(folder: &Path, layout: &Digest) -> Result<Belongs, StoreEr
     Ok(found)
 }
 
-/// Number of a tile file's name.
+/// The number in a tile file's name.
 fn file_number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
     let whole = digits.len() >= DIGITS && digits.bytes().all(|b| b.is_ascii_digit());
     digits.parse().ok().filter(|_| whole)
 }
 
-/// The largest number of a tile file that is there.
+/// The largest number of a tile file in the folder.
 fn last_number(folder: &Path) -> Result<Option<u64>, StoreError> {
     let files = listed(folder, is_tile_file)?;
     let number = |path: &PathBuf| file_number(path.file_name()?.to_str()?);
@@ -268,7 +268,7 @@ fn is_ours(name: &str) -> bool {
     name == LOCK || name == manifest::NAME || is_part(name) || is_tile_file(name)
 }
 
-/// The entries of a folder with such names, sorted.
+/// The entries of a folder with names of this sort, sorted.
 pub(super) fn listed(
     folder: &Path,
     wanted: impl Fn(&str) -> bool,
@@ -285,10 +285,10 @@ pub(super) fn listed(
     Ok(paths)
 }
 
-/// Makes a folder durably, if it is not there.
+/// Makes a folder durably, if it does not exist.
 pub(super) fn make(folder: &Path) -> Result<(), StoreError> {
     match fs::create_dir(folder) {
-        // Whoever made it may have died before it was durable.
+        // The process that made it may have died before it was durable.
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
         made => made.map_err(StoreError::io("create", folder))?,
     }
@@ -311,7 +311,7 @@ fn remove(path: &Path) -> Result<(), StoreError> {
     fs::remove_file(path).map_err(StoreError::io("remove", path))
 }
 
-/// Removes the folder with everything of slipmap's in it.
+/// Removes the folder and all that slipmap put into it.
 pub(super) fn clear(folder: &Path) -> Result<(), StoreError> {
     refuse_foreign(folder)?;
     let lock = lock(folder)?;
@@ -320,13 +320,13 @@ pub(super) fn clear(folder: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Removes what a folder holds that this process has claimed.
+/// Removes the contents of a folder that this process has claimed.
 fn clear_claimed(folder: &Path) -> Result<(), StoreError> {
     refuse_foreign(folder)?;
     let manifest = folder.join(manifest::NAME);
     if manifest.exists() {
-        // Without its manifest the folder is on its way out, and nobody takes what is left for half
-        // a map.
+        // The manifest goes first: a folder without one is being removed, and its rest is not taken
+        // for half a map.
         let part = folder.join(format!(".{}{PART}", manifest::NAME));
         rename_synced(&manifest, &part)?;
     }

@@ -1,4 +1,4 @@
-//! The layout of a tile file: records of pieces, behind an index with their checksums.
+//! The layout of a tile file: an index with checksums, then the records of pieces.
 //!
 //! ```text
 //! magic (16) · layout (32) · number of records (8)
@@ -7,8 +7,8 @@
 //! the records' bytes, one after the other
 //! ```
 //!
-//! Numbers are unsigned, little-endian. `layout` is a hash of all that has to be equal for records
-//! to belong together.
+//! Numbers are unsigned, little-endian. `layout` is a hash of everything that records which belong
+//! together have in common.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -17,7 +17,7 @@ use super::record::{Digest, Record, digest};
 use crate::sweep::plan::pieces::Piece;
 
 const MAGIC: [u8; 16] = *b"slipmap tiles 1\n";
-/// Bytes before the entries.
+/// Bytes before the index entries.
 pub(super) const HEAD: usize = MAGIC.len() + size_of::<Digest>() + 8;
 const ENTRY: usize = 24 + size_of::<Digest>();
 
@@ -26,9 +26,9 @@ const ENTRY: usize = 24 + size_of::<Digest>();
 pub struct Entry {
     /// Which piece.
     pub piece: Piece,
-    /// Where its bytes stand in the file.
+    /// The range of its bytes in the file.
     pub at: Range<usize>,
-    /// Their checksum.
+    /// The checksum of its bytes.
     pub digest: Digest,
 }
 
@@ -70,7 +70,7 @@ pub fn write(out: &mut impl Write, layout: &Digest, records: &[Record]) -> io::R
     records.iter().try_for_each(|r| out.write_all(&r.payload))
 }
 
-/// The index that a file of `records` has.
+/// The index of a file with these `records`.
 #[must_use]
 pub fn entries(records: &[Record]) -> Vec<Entry> {
     let mut end = HEAD + records.len() * ENTRY + size_of::<Digest>();
@@ -86,7 +86,8 @@ pub fn entries(records: &[Record]) -> Vec<Entry> {
     records.iter().map(entry).collect()
 }
 
-/// Bytes before the records, from the first [`HEAD`] ones; none where they tell none.
+/// The number of bytes before the records, from the first [`HEAD`] bytes; none where these are
+/// invalid.
 pub(super) fn length_of_head(head: &[u8]) -> Option<usize> {
     let head = head.get(..HEAD)?;
     let count = usize::try_from(number(head, HEAD - 8)).ok()?;
@@ -94,7 +95,7 @@ pub(super) fn length_of_head(head: &[u8]) -> Option<usize> {
     entries.checked_add(HEAD + size_of::<Digest>())
 }
 
-/// The index of a file's bytes. The records' own checksums are not looked at, see [`is_sound`].
+/// The index of a file's bytes. It does not check the records' own checksums, see [`is_sound`].
 ///
 /// # Errors
 /// When the index cannot be trusted.
@@ -130,7 +131,7 @@ pub fn index(bytes: &[u8], layout: &Digest) -> Result<Vec<Entry>, Damage> {
     head[HEAD..].chunks_exact(ENTRY).map(entry).collect()
 }
 
-/// Whether a record's bytes are there and are those that were written.
+/// Whether a record's bytes are in the file and are those that were written.
 #[must_use]
 pub fn is_sound(bytes: &[u8], entry: &Entry) -> bool {
     bytes
@@ -217,7 +218,7 @@ mod tests {
         let whole = written();
         for length in 0..whole.len() {
             let read = sound(&whole[..length]);
-            // The last record has no bytes: nothing of it can be cut off.
+            // The last record has no bytes, so cutting the file does not damage it.
             assert!(
                 read.len() < 3 && read.iter().all(|r| records().contains(r)),
                 "{length}"

@@ -1,5 +1,5 @@
-//! A map whose run is not complete, read from its tiles as far as there are any. No file is written
-//! for it, and no tile is read twice.
+//! A map that is still being computed, read from its tiles so far. No file is written for it, and
+//! no tile is read twice.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ pub struct GrowingMap {
     stamps: Vec<Option<Stamp>>,
 }
 
-/// What changes when a folder's tiles are of something else than before.
+/// The stamp of a folder's manifest, which changes when its tiles are of another sweep.
 fn stamp(folder: &Path) -> Option<Stamp> {
     Stamp::of(&folder.join(manifest::NAME))
 }
@@ -37,7 +37,7 @@ impl GrowingMap {
     /// The tiles beside `map`; none where there are none.
     ///
     /// # Errors
-    /// When no manifest is sound, tiles are cut as another program cuts them, or the system
+    /// When no manifest is sound, the tile shape is not that of this program, or the system
     /// refuses.
     pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
         let present = shards::present(map)?;
@@ -67,8 +67,8 @@ impl GrowingMap {
         }))
     }
 
-    /// Looks for files that were not there before. False where the folders are no longer those that
-    /// they were: the map is complete now, or was begun anew.
+    /// Reads the heads of new tile files. False where the folders have changed: the map is complete
+    /// now, or was begun anew.
     ///
     /// # Errors
     /// When the system refuses.
@@ -83,13 +83,13 @@ impl GrowingMap {
         Ok(true)
     }
 
-    /// The plan that the tiles are of.
+    /// The plan of the tiles.
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// Who computes them.
+    /// The manifest of the tiles.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
@@ -101,7 +101,7 @@ impl GrowingMap {
         self.folders.iter().any(|folder| shards::is_running(folder))
     }
 
-    /// The pieces that are there: how many, and the cells of those.
+    /// The number of finished pieces, and the number of cells in them.
     #[must_use]
     pub fn done(&self) -> (u64, u64) {
         let mut done: Vec<Piece> = self.readers.iter().flat_map(TileReader::done).collect();
@@ -157,8 +157,8 @@ impl GrowingMap {
         }
     }
 
-    /// The curves of the plane at `index`, one index per axis; none where they are not there yet,
-    /// or the map has none.
+    /// The curves of the plane at `index`, one index per axis; none where they are not computed
+    /// yet, or the map has no curves.
     ///
     /// # Errors
     /// As [`GrowingMap::stored`].

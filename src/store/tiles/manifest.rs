@@ -1,8 +1,8 @@
-//! What a folder of tiles belongs to, as JSON under a checksum; and where that differs from what is
-//! asked for.
+//! The manifest of a folder of tiles, as JSON with a checksum: which sweep, plan and program the
+//! tiles belong to, and how they differ from those asked for.
 //!
-//! The file is the object of [`Manifest`] with a first field more, `sha256`: that of the text
-//! without it.
+//! The file is the object of [`Manifest`] with one more field in front, `sha256`: the checksum of
+//! the text without that field.
 
 use std::path::Path;
 
@@ -22,14 +22,14 @@ pub const NAME: &str = "manifest.json";
 /// Version of the layout of tile files and their folder.
 pub const TILES_FORMAT_VERSION: u32 = 2;
 
-/// More bytes than this are no manifest.
+/// The most bytes of a manifest.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// How the text begins without the checksum.
 const OPENING: &str = "{\n";
-/// What stands before the checksum in its place.
+/// The text before the checksum.
 const SEAL: &str = "{\n  \"sha256\": \"";
-/// What stands behind the checksum.
+/// The text after the checksum.
 const SEALED: &str = "\",\n";
 
 fn checksum(text: &str) -> String {
@@ -61,7 +61,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Of a shard of a plan, computed by this program.
+    /// The manifest of a shard of a plan, computed by this program.
     #[must_use]
     pub fn of(plan: &Plan, shard: Shard, program: &Provenance) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl Manifest {
         }
     }
 
-    /// The manifest of another shard.
+    /// The same manifest for another shard.
     pub(super) fn of_shard(&self, shard: &str) -> Self {
         Self {
             shard: shard.to_owned(),
@@ -85,7 +85,7 @@ impl Manifest {
         }
     }
 
-    /// An error where tiles of `self`, in `folder`, do not belong to what is asked for.
+    /// An error where the tiles of `self`, in `folder`, do not belong to those asked for.
     pub(super) fn refuse_unlike(&self, asked: &Self, folder: &Path) -> Result<(), StoreError> {
         match self.difference(asked) {
             None => Ok(()),
@@ -99,7 +99,8 @@ impl Manifest {
     /// Reads a manifest from the text of its file.
     ///
     /// # Errors
-    /// When the checksum is not there or does not fit, or the text is no manifest, in words.
+    /// A description of the fault when the checksum is missing or wrong, or the text is no
+    /// manifest.
     pub fn unseal(text: &str) -> Result<Self, String> {
         let sealed = text
             .strip_prefix(SEAL)
@@ -112,10 +113,10 @@ impl Manifest {
         Self::parse(&body)
     }
 
-    /// The text of its file.
+    /// The text of the manifest file.
     #[must_use]
     pub fn sealed(&self) -> String {
-        // Numbers and strings only: nothing here can be refused.
+        // The struct has only numbers and strings, so this cannot fail.
         let body = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
         let rest = body.strip_prefix(OPENING).unwrap_or_default();
         format!("{SEAL}{}{SEALED}{rest}", checksum(&body))
@@ -124,7 +125,7 @@ impl Manifest {
     /// Reads the object without the checksum.
     ///
     /// # Errors
-    /// When the text is no manifest, in words that say where.
+    /// A description of the fault and its place when the text is no manifest.
     pub fn parse(text: &str) -> Result<Self, String> {
         serde_json::from_str(text).map_err(|error| error.to_string())
     }
@@ -145,8 +146,8 @@ impl Manifest {
         Self::unseal(&text).map_err(damaged)
     }
 
-    /// A hash of all that has to be equal for tiles to belong together: everything but the shard
-    /// and the sweep's wording.
+    /// A hash of everything that tiles which belong together have in common: all but the shard and
+    /// the wording of the sweep.
     #[must_use]
     pub fn layout(&self) -> Digest {
         let all = (
@@ -157,10 +158,10 @@ impl Manifest {
         digest(serde_json::to_string(&all).unwrap_or_default().as_bytes())
     }
 
-    /// The plan that the tiles are of.
+    /// The plan of the tiles.
     ///
     /// # Errors
-    /// When its text is no sweep, or not the one that it was.
+    /// When the sweep's text is no sweep, or gives another plan than it did.
     pub fn read_plan(&self) -> Result<Plan, SpecError> {
         let plan = Plan::new(self.sweep.parse::<SweepSpec>()?)?;
         if plan.hash() != self.plan_hash {
@@ -170,7 +171,7 @@ impl Manifest {
         Ok(plan)
     }
 
-    /// The first thing in which tiles differ from what is asked for, in words; none where they
+    /// The first difference between these tiles and those asked for, in words; none where they
     /// belong together.
     #[must_use]
     pub fn difference(&self, asked: &Self) -> Option<String> {
@@ -228,7 +229,7 @@ mod tests {
         for bit in 0..text.len() * 8 {
             let mut bytes = text.clone().into_bytes();
             bytes[bit / 8] ^= 1 << (bit % 8);
-            // What is no text is refused before.
+            // Text that is not UTF-8 is refused earlier.
             if let Ok(text) = String::from_utf8(bytes) {
                 assert!(Manifest::unseal(&text).is_err(), "bit {bit}");
             }

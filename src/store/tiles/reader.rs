@@ -1,4 +1,4 @@
-//! The tile files of one folder, checked and read; nothing is changed.
+//! Checks and reads the tile files of one folder, without changing anything.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -14,7 +14,7 @@ use super::format::{self, Damage, Entry};
 use super::record::{Digest, Record, digest};
 use crate::sweep::plan::pieces::{Piece, Pieces};
 
-/// More bytes than this are no tile file.
+/// The most bytes of a tile file.
 const MOST_BYTES: u64 = 4 << 30;
 
 /// A tile file that is not as it was written.
@@ -33,17 +33,17 @@ struct TileFile {
     entries: Vec<Entry>,
 }
 
-/// A tile file that was read and checked, byte by byte.
+/// A tile file of which every byte was read and checked.
 pub(super) struct Checked {
     pub bytes: Vec<u8>,
-    /// Its sound records, which are of pieces that there are.
+    /// Its sound records, all of pieces that the plan has.
     pub sound: Vec<Entry>,
-    /// What is wrong with it, in words, if something is.
+    /// What is wrong with the file, in words.
     pub fault: Option<String>,
 }
 
 impl Checked {
-    /// Reads a file of a folder whose tiles have `layout` in common; none where it is gone.
+    /// Reads a file of a folder whose tiles share `layout`; none where the file is gone.
     pub(super) fn read(
         path: &Path,
         layout: &Digest,
@@ -64,7 +64,7 @@ impl Checked {
                     path: path.to_owned(),
                 });
             }
-            // Gone since the folder was listed: its run has just put the map together.
+            // The file has gone since the folder was listed: its run has just assembled the map.
             Err(NotRead::Refused(error)) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(NotRead::Refused(error)) => return Err(StoreError::io("read", path)(error)),
         };
@@ -87,7 +87,7 @@ impl Checked {
     }
 }
 
-/// What the head of a tile file says that it holds; nothing where that is not sound.
+/// The entries in the head of a tile file; empty where the head is not sound.
 fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
     let found = path.metadata()?;
     if !found.is_file() {
@@ -108,7 +108,7 @@ fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
     Ok(entries.into_iter().filter(whole).collect())
 }
 
-/// Whether a tile file belongs to what has `layout`; none where it does not say.
+/// Whether a tile file has this `layout`; none where its head is unreadable.
 pub(super) fn is_of(path: &Path, layout: &Digest) -> Result<Option<bool>, StoreError> {
     match read_regular(path, MOST_BYTES) {
         Ok(bytes) => Ok(match format::index(&bytes, layout) {
@@ -121,20 +121,20 @@ pub(super) fn is_of(path: &Path, layout: &Digest) -> Result<Option<bool>, StoreE
     }
 }
 
-/// What the tile files of a folder hold.
+/// The contents of the tile files of a folder.
 #[derive(Debug)]
 pub struct TileReader {
     path: PathBuf,
     layout: Digest,
     pieces: Pieces,
     files: Vec<TileFile>,
-    /// Where each piece stands, by [`Pieces::place`]: file and entry.
+    /// File and entry of each piece, by [`Pieces::place`].
     index: Vec<Option<(u32, u32)>>,
     open: Option<(u32, File)>,
 }
 
 impl TileReader {
-    /// For a folder from which no file has been read yet.
+    /// A reader that has not read any file of its folder yet.
     fn empty(path: &Path, layout: Digest, pieces: Pieces) -> Self {
         Self {
             path: path.to_owned(),
@@ -146,11 +146,11 @@ impl TileReader {
         }
     }
 
-    /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of
-    /// these are there too.
+    /// Reads every byte in the folder `path`, and reports damaged files. The sound pieces of these
+    /// are available too.
     ///
     /// # Errors
-    /// When it is to stop, or the system refuses.
+    /// When `stop` is set, or the system refuses.
     pub fn of(
         path: &Path,
         layout: Digest,
@@ -170,8 +170,8 @@ impl TileReader {
         Ok((reader, damaged))
     }
 
-    /// Reads the heads of the files alone: whether a piece is as it was written is seen when it is
-    /// read. What has no sound head is left out.
+    /// Reads only the heads of the files, and skips files without a sound head. A piece is checked
+    /// when it is read.
     ///
     /// # Errors
     /// When the system refuses.
@@ -185,7 +185,7 @@ impl TileReader {
         Ok(reader)
     }
 
-    /// Adds the files that were not there before, by their heads.
+    /// Adds new files, by their heads.
     pub(super) fn add_new(&mut self) -> Result<(), StoreError> {
         let known: HashSet<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
         let found = listed(&self.path, is_tile_file)?;
@@ -202,7 +202,7 @@ impl TileReader {
         Ok(())
     }
 
-    /// Adds the sound pieces of a file. What is wrong with it, if something is.
+    /// Adds the sound pieces of a file. Returns what is wrong with the file, if anything.
     fn take_in(&mut self, path: &Path) -> Result<Option<String>, StoreError> {
         let Some(checked) = Checked::read(path, &self.layout, self.pieces)? else {
             return Ok(None);
@@ -227,12 +227,12 @@ impl TileReader {
         &self.path
     }
 
-    /// The hash of all that its tiles have in common.
+    /// The hash of everything that the folder's tiles have in common.
     pub(super) fn layout(&self) -> &Digest {
         &self.layout
     }
 
-    /// The pieces that are there.
+    /// The pieces in the folder.
     pub fn done(&self) -> impl Iterator<Item = Piece> {
         let places = self.index.iter().enumerate();
         places

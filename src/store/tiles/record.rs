@@ -1,4 +1,4 @@
-//! Pieces on their way from the computing threads to the map: bytes, with a checksum.
+//! Pieces between the computing threads and the map: bytes with a checksum.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -14,7 +14,7 @@ use crate::sweep::plan::pieces::Piece;
 /// SHA-256.
 pub type Digest = [u8; 32];
 
-/// A computed piece as bytes.
+/// A computed piece, encoded as bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
     /// Which piece.
@@ -40,7 +40,7 @@ pub(super) fn digest(bytes: &[u8]) -> Digest {
     Sha256::digest(bytes).into()
 }
 
-/// What a payload holds.
+/// The decoded payload of a record.
 pub(crate) enum Content<'a> {
     /// The rows of a plane of curves.
     Curves(Box<CurveRows>),
@@ -50,16 +50,16 @@ pub(crate) enum Content<'a> {
     Tile(TileContent<'a>),
 }
 
-/// What is kept of a tile.
+/// The stored contents of a tile.
 pub(crate) struct TileContent<'a> {
-    /// What values its cells have.
+    /// Summary of the values of its cells.
     pub summary: CellsSummary,
     /// Its compressed chunks, in the order of the map's datasets.
     pub chunks: Vec<&'a [u8]>,
 }
 
 impl<'a> Content<'a> {
-    /// Reads the payload of a piece; none where it is not what it should be.
+    /// Reads the payload of a piece; none where it is invalid.
     pub(crate) fn read(piece: Piece, payload: &'a [u8]) -> Option<Self> {
         match piece {
             Piece::Curves(_) => {
@@ -72,8 +72,8 @@ impl<'a> Content<'a> {
     }
 }
 
-/// Whether bytes are the payload of such a piece; of a tile, whose chunks have `status_cells`
-/// statuses in the last one.
+/// Whether bytes are a valid payload of `piece`. For a tile, the last chunk must have
+/// `status_cells` statuses.
 #[must_use]
 pub fn is_readable(piece: Piece, payload: &[u8], status_cells: usize) -> bool {
     match Content::read(piece, payload) {
@@ -94,7 +94,7 @@ fn whole<T: DeserializeOwned>(payload: &[u8]) -> Option<T> {
 }
 
 impl<'a> TileContent<'a> {
-    /// The summary, then the chunks; each part after its length.
+    /// Reads the summary, then the chunks. The length of each part comes before it.
     fn read(payload: &'a [u8]) -> Option<Self> {
         let (summary, mut payload) = split_part(payload)?;
         let mut chunks = Vec::new();
@@ -120,7 +120,7 @@ fn put_part(payload: &mut Vec<u8>, part: &[u8]) {
     payload.extend(part);
 }
 
-/// Turns pieces into records, one per thread.
+/// Encodes pieces as records; each thread has its own.
 #[derive(Default)]
 pub struct RecordEncoder {
     codec: ChunkCodec,
@@ -155,6 +155,7 @@ impl Encode for RecordEncoder {
 }
 
 fn packed(rows: &impl Serialize) -> Vec<u8> {
-    // Only sequences of unknown length and failing implementations are refused, and there are none.
+    // Serialisation fails only for sequences of unknown length and custom implementations. Rows
+    // have neither.
     postcard::to_stdvec(rows).unwrap_or_default()
 }

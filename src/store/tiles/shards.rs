@@ -16,7 +16,7 @@ use super::reader::Damaged;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
 
-/// The folder beside `map` in which the folders of its shards are.
+/// The folder beside `map` that contains the folders of its shards.
 #[must_use]
 pub fn root(map: &Path) -> PathBuf {
     let mut name = map.file_name().unwrap_or_default().to_owned();
@@ -31,17 +31,17 @@ pub fn folder_of(map: &Path, shard: Shard) -> PathBuf {
     root(map).join(format!("{number}-of-{of}"))
 }
 
-/// In the folder of shards: the map of all of them is complete, and they are being removed. Holds
-/// the hash of its plan.
+/// A file in the folder of shards. It marks that the map of all shards is complete and that they
+/// are being removed, and holds the hash of the plan.
 const MERGED: &str = "merged";
-/// More bytes are in no such file.
+/// The most bytes of this file.
 const MOST_OF_MARK: u64 = 1024;
 
 fn marker(map: &Path) -> PathBuf {
     root(map).join(MERGED)
 }
 
-/// Says that the map of the shards of `map` is complete, before the first of them is removed.
+/// Marks the map of the shards of `map` as complete, before the first shard is removed.
 ///
 /// # Errors
 /// When the system refuses.
@@ -54,12 +54,12 @@ pub fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
     sync_name(&path)
 }
 
-/// Goes on with a removal of shards that was stopped midway, and says whether there was one.
-/// `is_complete` is asked whether the map of a plan's hash is; where it is not, it has gone since,
-/// and the shards that are left count as any.
+/// Continues a removal of shards that was interrupted; true if there was one. `is_complete` says
+/// whether the map with a plan's hash is complete. If it is not, the map has gone since, and the
+/// remaining shards count as any others.
 ///
 /// # Errors
-/// As [`clear`], and those of `is_complete`: the shards are then neither removed nor taken for half
+/// As [`clear`], and those of `is_complete`. The shards are then neither removed nor taken for half
 /// a map.
 pub fn settle(
     map: &Path,
@@ -89,10 +89,10 @@ fn shard_of(name: &str) -> Option<Shard> {
 /// The shards of `map` that have a folder, by number.
 ///
 /// # Errors
-/// When the system refuses; not where there is no folder at all.
+/// When the system refuses. A missing folder of shards is no error.
 pub fn present(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     let mut shards = all(map)?;
-    // One that was just made, or all but removed, holds nothing to speak of.
+    // A folder that was just made, or is all but removed, has nothing of interest.
     shards.retain(|(_, path)| !folder::is_bare(path));
     Ok(shards)
 }
@@ -114,7 +114,7 @@ fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     Ok(shards)
 }
 
-/// What is removed later has to be a folder of its own, not a way to one elsewhere.
+/// Refuses a link: a folder that is removed later must not lead elsewhere.
 fn refuse_link(folder: &Path) -> Result<(), StoreError> {
     match folder.symlink_metadata().is_ok_and(|m| m.is_dir()) {
         true => Ok(()),
@@ -124,10 +124,10 @@ fn refuse_link(folder: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// The first sound manifest of the folders of shards, and the plan that it is of.
+/// The first sound manifest of the folders of shards, and its plan.
 ///
 /// # Errors
-/// When there is none, or the first is damaged and so are all others.
+/// When there is no manifest, or no sound one.
 pub fn plan(folders: &[PathBuf]) -> Result<(Manifest, Plan), StoreError> {
     let mut first = None;
     for folder in folders {
@@ -150,7 +150,7 @@ fn planned(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
     }
 }
 
-/// Whether tiles of what is asked for, of any shard, stand beside `map`.
+/// Whether tiles of any shard that belong to `asked` stand beside `map`.
 #[must_use]
 pub fn hold(map: &Path, asked: &Manifest) -> bool {
     let holds = |folder: &Path| match manifest(folder) {
@@ -163,11 +163,11 @@ pub fn hold(map: &Path, asked: &Manifest) -> bool {
         .any(|(_, folder)| holds(folder))
 }
 
-/// The manifest that a folder has to have if it belongs to `expected`, and whether its own is
-/// sound. Where it is not, the folder's name says which shard it is of.
+/// The manifest that a folder must have to belong to `expected`, and whether its own is sound. For
+/// an unsound one the folder's name says which shard it is.
 ///
 /// # Errors
-/// When the system refuses, or nothing says which shard it is.
+/// When the system refuses, or the shard cannot be told.
 pub(super) fn expected_in(
     folder: &Path,
     expected: &Manifest,
@@ -226,10 +226,10 @@ pub fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
     }
 }
 
-/// Makes the folder in which those of the shards are, if it is not there.
+/// Makes the folder that contains those of the shards, if it does not exist.
 ///
 /// # Errors
-/// When something else is there, or in it, or the system refuses.
+/// When something else stands there or in it, or the system refuses.
 pub fn make_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     folder::make(&root)?;
@@ -241,10 +241,10 @@ pub fn make_root(map: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// Removes the folder of folders, in which nothing is left.
+/// Removes the folder of shards, which must be empty.
 ///
 /// # Errors
-/// When something is left, or the system refuses.
+/// When it is not empty, or the system refuses.
 pub fn remove_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     if !root.exists() {
@@ -269,7 +269,7 @@ pub struct Shards {
 }
 
 impl Shards {
-    /// Claims the folders `paths`, whose tiles all have to belong to `expected` but for the shard.
+    /// Claims the folders `paths`, whose tiles must all belong to `expected`, apart from the shard.
     ///
     /// # Errors
     /// See [`TileFolder::claim`].
@@ -290,14 +290,14 @@ impl Shards {
         Ok((Self { folders }, all))
     }
 
-    /// How many of `total` pieces are in none of them.
+    /// How many of `total` pieces are in no folder.
     #[must_use]
     pub fn missing(&self, total: u64) -> u64 {
         let done: BTreeSet<Piece> = self.folders.iter().flat_map(TileFolder::done).collect();
         total.saturating_sub(done.len() as u64)
     }
 
-    /// Removes them.
+    /// Removes all the folders.
     ///
     /// # Errors
     /// When the system refuses.

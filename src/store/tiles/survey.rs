@@ -1,4 +1,4 @@
-//! What the tiles beside a map hold, seen from outside: nothing is claimed and nothing changed.
+//! Surveys the tiles beside a map, without claiming or changing anything.
 
 use std::path::{Path, PathBuf};
 
@@ -12,14 +12,14 @@ use super::shards;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
 
-/// What the tiles of all shards of a map hold.
+/// The contents of the tiles of all shards of a map.
 #[derive(Debug)]
 pub struct Survey {
     /// The plan they are of.
     pub plan: Plan,
     /// Each shard.
     pub shards: Vec<ShardSurvey>,
-    /// What the statuses of the cells say; those that several shards hold count once.
+    /// Counts of the statuses of the cells; cells in several shards count once.
     pub statuses: StatusCounts,
     /// Pieces that some shard holds.
     pub pieces_done: u64,
@@ -27,26 +27,26 @@ pub struct Survey {
     pub cells_done: u64,
 }
 
-/// What the tiles of one shard hold.
+/// The contents of the tiles of one shard.
 #[derive(Debug)]
 pub struct ShardSurvey {
     /// Which one.
     pub shard: Shard,
-    /// A run works on it at this moment.
+    /// Whether a run works on it at this moment.
     pub running: bool,
     /// Cells of the shard.
     pub cells: u64,
-    /// Cells that are there.
+    /// Cells that are computed.
     pub cells_done: u64,
     /// Pieces of the shard.
     pub pieces: u64,
-    /// Pieces that are there.
+    /// Pieces that are computed.
     pub pieces_done: u64,
-    /// Files that are not as they were written; the next run computes what they held.
+    /// Damaged files; the next run computes their pieces again.
     pub damaged: Vec<PathBuf>,
 }
 
-/// What is known of the pieces while files are read.
+/// The pieces found so far while files are read.
 struct Seen {
     pieces: Pieces,
     /// By place.

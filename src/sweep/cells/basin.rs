@@ -1,15 +1,15 @@
-//! The share of starts from which control ends in sliding: a basin of attraction as a number. Its
-//! name elsewhere is basin stability (Menck et al., Nature Physics 9, 89, 2013).
+//! The share of starts from which control ends in sliding, known elsewhere as basin stability
+//! (Menck et al., Nature Physics 9, 89, 2013).
 //!
-//! Starts are points of a Sobol sequence, which fills a box more evenly than chance does, in
-//! [`SCRAMBLINGS`] independent scramblings by Owen's method: each of them alone gives the share
-//! without bias, so their mean has the standard error that their spread tells. (From one sequence
-//! that is not scrambled no error could be told.) The scramblings are the same in all cells, so
-//! that shares depend on the setting alone, and neighbouring ones differ by less than their errors.
+//! Starts are points of a Sobol sequence, which fills a box more evenly than random points. There
+//! are [`SCRAMBLINGS`] independent scramblings of it by Owen's method. Each alone gives an unbiased
+//! share, so the spread between them gives the standard error of their mean; a single unscrambled
+//! sequence would give no error. The scramblings are the same in all cells. Shares therefore depend
+//! on the setting alone, and neighbouring ones differ by less than their errors.
 //!
-//! What is not decided is not counted as sliding: it makes the interval wider in which the share
-//! lies. Where sliding is linearly unstable the share is 0, whatever is undecided: only exceptional
-//! starts come to an unstable state.
+//! Undecided starts do not count as sliding: they widen the interval of the share. Where sliding is
+//! linearly unstable the share is 0, whatever is undecided: only exceptional starts end in an
+//! unstable state.
 
 use crate::linear::MarginalTolerance;
 use crate::model::Control;
@@ -22,68 +22,69 @@ use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::input::source::BasinCell;
 
-/// 95 % of Student's distribution lie within so many standard errors, where these come from
+/// 95 % of Student's distribution lie within this many standard errors, if these come from
 /// [`SCRAMBLINGS`] values.
 pub const STUDENT_95: f64 = 2.131_449_545_559_323;
 
-/// What no start lies in has at most this many starts' part of the region, with 95 % confidence.
+/// With 95 % confidence, a part of the region without any start is no larger than this many starts'
+/// share of it.
 ///
-/// The starts of a scrambling that lie in a part p of the region number np in the mean, with a
-/// variance of at most 2np: twice that of independent ones (A. Owen, Annals of Statistics 25, 1541,
-/// 1997, for nets in two dimensions). Cantelli's inequality says how often it is none:
+/// In a part p of the region lie on average np of the n starts of a scrambling, with a variance of
+/// at most 2np. That is twice the variance of independent starts (A. Owen, Annals of Statistics 25,
+/// 1541, 1997, for nets in two dimensions). Cantelli's inequality bounds the probability of none:
 ///
 /// ```text
 /// P(none of n) ≤ 2/(2 + np),    P(none of 16 n) ≤ (2/(2 + np))¹⁶ = 5 %  at  16 np = 6.59
 /// ```
 pub const UNSEEN_95: f64 = 6.59;
-/// With fewer starts than this that differ from the others, their spread tells too little; bounds
-/// of independent starts (Clopper and Pearson) lie within [`UNSEEN_95`] of what is counted then.
+/// If fewer starts than this differ from the others, their spread is not reliable. Bounds of
+/// independent starts (Clopper and Pearson) then lie within [`UNSEEN_95`] of the counted number.
 const FEW: f64 = 5.0;
 
-/// Where starts lie, in units of the setting.
+/// The region of the starts, in units of the setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Region {
     /// In a box of states, with control on from t = 0.
     State {
-        /// ẋ at t = 0, from and to.
+        /// Range of ẋ at t = 0.
         x_dot0: [f64; 2],
-        /// The elongation at t = 0 and before, from and to.
+        /// Range of the elongation at t = 0 and before.
         a0: [f64; 2],
     },
-    /// Anywhere in the uncontrolled cycle, where control is switched on.
+    /// At any time of the uncontrolled cycle, when control is switched on.
     Phase {
-        /// Its period, of which all times are as likely.
+        /// Its period; all times of it are equally likely.
         period: f64,
     },
     /// There is no uncontrolled cycle.
     None,
 }
 
-/// What is asked of a setting, and what is known before any start is followed.
+/// The question of a setting, and what is known before any start is followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asked {
-    /// The motion, but for its start.
+    /// The motion, apart from its start.
     case: Case,
     region: Region,
     /// Re λ of the rightmost root of sliding, if it is stable.
     abscissa: Option<f64>,
     unstable: bool,
     starts: u32,
-    /// Number of the first of the scramblings.
+    /// Number of the first scrambling.
     first: u32,
 }
 
 /// One of the starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// In which of the [`SCRAMBLINGS`].
+    /// Which of the [`SCRAMBLINGS`].
     pub scrambling: u32,
-    /// Its number in that.
+    /// Its number in that scrambling.
     pub number: u32,
 }
 
 impl Asked {
-    /// Of a setting; none where it has no friction law.
+    /// The question of a setting; none without a friction law.
     ///
     /// # Errors
     /// When a parameter is outside the model's range, or the delay has too many cycles.
@@ -123,8 +124,8 @@ impl Asked {
         }))
     }
 
-    /// The same of fewer starts, at most so many, that are others, by collocation in the place of
-    /// Taylor's method, with an error of `tolerance` in a step at least.
+    /// The same question with at most `most` starts, which are different ones. They are followed by
+    /// collocation instead of Taylor's method, with an error of at least `tolerance` per step.
     #[must_use]
     pub fn again(self, most: u32, tolerance: f64) -> Self {
         let mut case = self.case;
@@ -138,26 +139,26 @@ impl Asked {
         }
     }
 
-    /// Until how long after switch-on outcomes are looked for.
+    /// The time after switch-on until which motions are followed.
     #[must_use]
     pub fn horizon(&self) -> f64 {
         self.case.horizon
     }
 
-    /// Where starts lie.
+    /// The region of the starts.
     #[must_use]
     pub fn region(&self) -> Region {
         self.region
     }
 
-    /// Whether sliding is linearly unstable beyond doubt, so that none but exceptional starts end
-    /// in it.
+    /// Whether sliding is linearly unstable beyond doubt, so that only exceptional starts end in
+    /// it.
     #[must_use]
     pub fn unstable(&self) -> bool {
         self.unstable
     }
 
-    /// What is known of the share before any start is followed, if it is.
+    /// The result, where it is known before any start is followed.
     #[must_use]
     pub fn known(&self) -> Option<BasinCell> {
         let all = |share| BasinCell {
@@ -171,7 +172,7 @@ impl Asked {
         }
     }
 
-    /// What is known of the share once all starts were followed.
+    /// The result once all starts have been followed.
     #[must_use]
     pub fn cell(&self, tally: &Tally) -> BasinCell {
         let least = tally.share(&[Outcome::Sliding]);
@@ -183,7 +184,7 @@ impl Asked {
         })
     }
 
-    /// How many starts there are; none where there is no uncontrolled cycle.
+    /// Number of starts; 0 without an uncontrolled cycle to start in.
     #[must_use]
     pub fn starts(&self) -> u32 {
         match self.region {
@@ -234,7 +235,7 @@ pub struct Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// What becomes of a start, in the memory of another motion, if there is one.
+    /// The outcome of a start. The memory of another motion is reused if there is one.
     pub fn follow(&mut self, place: Place, motion: &mut Option<Motion>) -> Outcome {
         let [first, second] = self.asked.start(place);
         let case = &mut self.case;
@@ -247,7 +248,7 @@ impl Follower<'_> {
                 case.start = Start::AfterRelease;
                 if case.switch_on.is_finite() {
                     case.switch_on = first;
-                    // As long after switch-on as where that is at t = 0.
+                    // The same time after switch-on as for a switch-on at t = 0.
                     case.horizon = self.asked.case.horizon + first;
                 }
             }
@@ -257,7 +258,7 @@ impl Follower<'_> {
             Some(motion) => case.restart(motion).map(|()| motion),
             none => case.motion().map(|new| none.insert(new)),
         };
-        // What is refused here is beyond what can be followed.
+        // An error here means that the motion cannot be followed.
         begun.map_or(Outcome::Undecided, |motion| {
             case.follow(motion, self.asked.abscissa, &mut ()).outcome
         })
@@ -269,29 +270,30 @@ impl Follower<'_> {
 pub struct Share {
     /// Between 0 and 1.
     pub share: f64,
-    /// Its standard error, from the spread between scramblings. Where (nearly) all starts agree,
-    /// [`STUDENT_95`] of it are at least [`UNSEEN_95`] starts: what none lies in is not seen.
+    /// Its standard error, from the spread between scramblings. Where all or nearly all starts
+    /// agree, [`STUDENT_95`] times it is at least [`UNSEEN_95`] starts: parts of the region may
+    /// contain none.
     pub error: f64,
 }
 
-/// How many starts of each scrambling came to each outcome.
+/// How many starts of each scrambling had each outcome.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tally([[u32; Outcome::ALL.len()]; SCRAMBLINGS as usize]);
 
 impl Tally {
-    /// One more start.
+    /// Counts one more start.
     pub fn count(&mut self, place: Place, outcome: Outcome) {
         self.0[place.scrambling as usize][outcome as usize] += 1;
     }
 
-    /// How many starts came to an outcome.
+    /// How many starts had an outcome.
     #[must_use]
     pub fn starts(&self, outcome: Outcome) -> u32 {
         self.0.iter().map(|counts| counts[outcome as usize]).sum()
     }
 
-    /// The share of starts that came to one of these outcomes; NaN where there is no start. All
-    /// scramblings have as many.
+    /// The share of starts with one of these outcomes; NaN without any start. All scramblings have
+    /// equally many.
     #[must_use]
     pub fn share(&self, of: &[Outcome]) -> Share {
         let all: u32 = self.0.iter().flatten().sum();
@@ -341,8 +343,8 @@ mod tests {
         ))
     }
 
-    /// A quarter of a disk, whose area is known: the error falls faster than by chance, and is what
-    /// it says it is.
+    /// A quarter of a disk, whose area is known: the error falls faster than for random starts, and
+    /// is as large as stated.
     #[test]
     fn errors_of_shares_are_what_they_say() {
         let exact = std::f64::consts::FRAC_PI_4;
@@ -370,7 +372,7 @@ mod tests {
         assert!((8..=40).contains(&beyond), "{beyond}");
         let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
         let (few, many) = (mean(&errors[..40]), mean(&errors[400..]));
-        // By chance √(p(1 − p)/N): 0.051 and 0.0016.
+        // For random starts √(p(1 − p)/N): 0.051 and 0.0016.
         assert!(few < 0.04 && many < 0.0003, "{few} {many}");
     }
 
@@ -388,8 +390,8 @@ mod tests {
         assert!((unseen - 0.05).abs() < 1e-4, "{unseen}");
     }
 
-    /// Parts of the box of several shapes, so small that often no start lies in them, and as often
-    /// as not a few: 95 % of the intervals hold their size.
+    /// Parts of the box of several shapes, so small that they often contain no start, or only a
+    /// few: 95 % of the intervals contain their size.
     #[test]
     fn small_parts_lie_within_their_intervals() {
         let starts = 1024;
@@ -430,7 +432,7 @@ mod tests {
             }
         }
         assert_eq!(all, 960);
-        // Of so rare parts fewer are missed than the 5 % that are promised.
+        // For such rare parts fewer are missed than the stated 5 %.
         assert!(missed <= 24, "{missed}");
     }
 

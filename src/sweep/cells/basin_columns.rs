@@ -1,4 +1,4 @@
-//! The fields that come from motions from many starts.
+//! The fields from motions with many starts.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -18,11 +18,11 @@ use crate::sweep::input::spec::SweepSpec;
 pub(super) struct BasinColumns<'p> {
     basin: &'p Basin,
     simulation: &'p Simulation,
-    /// The memory of all motions.
+    /// Memory shared by all motions.
     motion: Option<Motion>,
 }
 
-/// Of a cell that cannot be followed.
+/// The result of a cell that cannot be followed.
 const UNKNOWN: BasinCell = BasinCell {
     share: 0.0,
     error: 0.0,
@@ -30,7 +30,7 @@ const UNKNOWN: BasinCell = BasinCell {
 };
 
 impl<'p> BasinColumns<'p> {
-    /// For the fields of a sweep; none where none of them is of many starts.
+    /// The columns of a sweep; none without a field over many starts.
     pub(super) fn new(spec: &'p SweepSpec) -> Option<Self> {
         Some(Self {
             basin: spec.basin.as_ref()?,
@@ -46,7 +46,8 @@ impl<'p> BasinColumns<'p> {
             let Some(cell) = self.cell(here.setting, line.stop) else {
                 return;
             };
-            // The sweep's values were checked: what is refused is beyond what can be followed.
+            // The values of the sweep are checked: an error here means that motions cannot be
+            // followed.
             let cell = cell.unwrap_or(UNKNOWN);
             if cell.upper > cell.share {
                 buffers.status[here.place] |= NOT_CONVERGED;
@@ -58,7 +59,7 @@ impl<'p> BasinColumns<'p> {
         });
     }
 
-    /// What is known of a cell; none after a stop.
+    /// The result of a cell; none after a stop.
     fn cell(
         &mut self,
         setting: &Setting,

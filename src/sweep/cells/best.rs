@@ -17,16 +17,16 @@ use crate::sweep::plan::Plan;
 /// Largest |b| for which best settings are searched.
 const STEEPEST: f64 = 1e4;
 
-/// Delays searched unless others are asked for: so many periods 2π√(M/κ) of the free oscillator.
+/// Range of delays by default, in periods 2π√(M/κ) of the free oscillator.
 const PERIODS: f64 = 4.0;
-/// Gains of velocity control searched unless others are asked for: so far in units of the larger of
-/// 1 and |b|. Its best settings are far inside, at −0.16 to −0.32 for −0.73 < b < 0.
+/// Range of the gain of velocity control by default, in units of the larger of 1 and |b|. The best
+/// settings lie far inside, at −0.16 to −0.32 for −0.73 < b < 0.
 const FARTHEST_VELOCITY: f64 = 2.0;
-/// Load gains searched unless others are asked for: so far beyond 0 and the weakest negative gain
-/// that stabilises, in units of 1 + |b|. The triple real root is at half of that or less.
+/// Range of the load gain by default, beyond 0 and beyond the weakest negative gain that
+/// stabilises, in units of 1 + |b|. The triple real root lies at half of that or less.
 const BEYOND_FOLD: f64 = 4.0;
 
-/// What [`best_settings`] searches.
+/// The ranges of a search by [`best_settings`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranges {
     /// Gains, from ≤ to.
@@ -38,7 +38,7 @@ pub struct Ranges {
 /// A stable region of the plane of gain and delay, with its own best setting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestRegion {
-    /// Where it lies, at the resolution of [`crate::linear::best`].
+    /// Its extent, at the resolution of [`crate::linear::best`].
     pub ranges: Ranges,
     /// The setting of fastest decay in it.
     pub best: Optimum,
@@ -47,15 +47,15 @@ pub struct BestRegion {
 /// The best settings of a plane (gain, delay); everything in the units of the parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestSettings {
-    /// The setting of fastest decay; where none is stable, of slowest growth.
+    /// The setting of fastest decay or, where none is stable, of slowest growth.
     pub overall: Optimum,
-    /// Every stable region, by shortest delay.
+    /// Every stable region, ordered by its shortest delay.
     pub regions: Vec<BestRegion>,
-    /// Further regions, which were not searched.
+    /// Number of further regions, which were not searched.
     pub regions_left_out: usize,
 }
 
-/// What turns dimensionless gains and delays into physical ones.
+/// Converts dimensionless gains and delays to physical ones.
 struct Scales {
     gain: f64,
     time: f64,
@@ -74,7 +74,7 @@ impl Scales {
         })
     }
 
-    /// Inside `ranges`, which scaling could leave by rounding.
+    /// Converts an optimum. It is kept inside `ranges`, which rounding could leave.
     fn optimum(&self, found: &Optimum, ranges: &Ranges) -> Optimum {
         let (gain, tau) = (ranges.gain, ranges.tau);
         Optimum {
@@ -92,9 +92,9 @@ fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
     (from * by, to * by)
 }
 
-/// The ranges that are searched at `setting` where none are given. Delays: up to four periods of
-/// the free oscillator. Dimensionless gains: for velocity control ±2 max(1, |b|); for load control
-/// from 4(1 + |b|) below the weakest negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
+/// The default ranges of a search at `setting`. Delays: up to four periods of the free oscillator.
+/// Dimensionless gains for velocity control: ±2 max(1, |b|). For load control they reach from 4(1 +
+/// |b|) below the weakest negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
@@ -117,8 +117,8 @@ pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, M
     })
 }
 
-/// The groups of `setting`, if |b| is not so large that its optima lie at delays which no search
-/// resolves.
+/// The groups of `setting`. It is an error if |b| is so large that no search resolves the delays of
+/// the optima.
 fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
     let sliding = setting.sliding_point()?;
     let groups = setting.oscillator()?.groups(sliding, setting.control());
@@ -132,8 +132,8 @@ fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
     Ok(groups)
 }
 
-/// The settings of fastest decay for every stable region within `ranges`, all parameters but `gain`
-/// and the delay being those of `setting`.
+/// The settings of fastest decay for every stable region within `ranges`. All parameters but `gain`
+/// and the delay are those of `setting`.
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
@@ -159,21 +159,21 @@ fn of_letter(setting: &Setting) -> bool {
     !setting.has_state() && !Parameter::BEYOND_LETTER.iter().any(beyond)
 }
 
-/// A setting that is best where gain, delay and μ′ may be off together.
+/// The best setting under joint errors of gain, delay and μ′.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSetting {
-    /// How far they may be off, as a part of each.
+    /// The largest relative error of each.
     pub spread: f64,
-    /// The setting, with its slowest decay; in the units of the parameters.
+    /// The setting, with its slowest decay under these errors; in the units of the parameters.
     pub robust: Robust,
-    /// The slowest decay within the same spread around the setting of fastest decay, and whether
-    /// that is proved.
+    /// The slowest decay around the setting of fastest decay, under the same errors, and whether it
+    /// is proved.
     pub worst_of_best: (f64, bool),
 }
 
-/// The best settings within `ranges`, as [`best_settings`] has them, and the most robust one for
-/// changes of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′; none where no setting stays
-/// stable.
+/// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
+/// relative errors of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′. None for the latter
+/// where no setting stays stable.
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range, or beyond the letter: there W is not
@@ -269,15 +269,14 @@ impl Scales {
     }
 }
 
-/// Where the plane of number `number` whose best settings are looked for lies, as indices along
-/// every axis.
+/// The place of the `number`-th plane of best settings, as indices along every axis.
 #[must_use]
 pub fn best_plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.best_plane(), number)
 }
 
-/// The best settings of the plane of a plan that lies at `index`; none where a parameter is outside
-/// the model's range.
+/// The best settings of a plan in the plane at `index`; none where a parameter is outside the
+/// model's range.
 #[must_use]
 pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
     let (p, tau) = plan.best_plane()?;

@@ -1,8 +1,8 @@
-//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane of two of its
+//! Crossing curves of a whole sweep, and the curves of its degrees of stability: one plane of two
 //! axes for each setting of the others.
 //!
-//! Planes of the letter's own system with the delay have curves in closed form; those of any other
-//! system, or of other parameters, are followed step by step.
+//! In planes of the letter's own system with the delay, the curves have a closed form. For other
+//! systems and other parameters they are followed step by step.
 
 use super::any_plane;
 use crate::linear::Crossings;
@@ -16,7 +16,7 @@ use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::tile::index_of;
 use crate::sweep::plan::{Plan, traced_by_closed_form};
 
-/// Steps in which breakpoints are looked for along a parameter that is no gain.
+/// Steps of the search for breakpoints along a parameter that is no gain.
 const SCAN_STEPS: usize = 4096;
 
 /// The curves of one plane.
@@ -31,21 +31,19 @@ pub struct BoundaryPlane {
 /// The curves of one degree of stability in one plane.
 #[derive(Debug, Clone)]
 pub struct DegreeCurves {
-    /// σ in 1/time: the curves are where a root has Re λ = −σ. 0 for crossings of the imaginary
-    /// axis.
+    /// σ in 1/time: on the curves a root has Re λ = −σ. 0 for crossings of the imaginary axis.
     pub degree_of_stability: f64,
     /// The curves; an error where there are too many.
     pub curves: Result<PlaneCurves, TooManyCurves>,
 }
 
-/// Where the plane of curves of number `number` lies, as indices along every axis; 0 along its own
-/// two.
+/// The place of the `number`-th plane of curves, as indices along every axis; 0 along its own two.
 #[must_use]
 pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.boundary_plane, number)
 }
 
-/// The setting of that number of the axes outside a plane, the last one fastest, as indices along
+/// The `number`-th setting of the axes outside a plane, the last one fastest, as indices along
 /// every axis.
 pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: u64) -> Vec<usize> {
     let mut shape = plan.shape().to_vec();
@@ -102,7 +100,7 @@ fn trace_window(
     };
     groups_at(*window.p.start())?;
     groups_at(*window.p.end())?;
-    // Between two valid ends the model stays valid: its ranges are intervals.
+    // The model's ranges are intervals, so it is valid between two valid ends.
     let valid_groups_at = |p: f64| groups_at(p).unwrap_or((Groups::new(1.0, 0.0, 0.0), 1.0));
     let crossings_at = |p: f64| {
         let (groups, unit) = valid_groups_at(p);
@@ -132,8 +130,8 @@ fn trace_window(
     std::iter::once(0.0).chain(degrees).map(traced).collect()
 }
 
-/// Values of `parameter` at which the number of crossing curves changes, `start` being the groups
-/// at one of them and the unit of time; `scanned` where they have no closed form.
+/// Values of `parameter` at which the number of crossing curves changes. `start` has the groups at
+/// one value and the unit of time. The values are `scanned` for where they have no closed form.
 fn breakpoints(
     setting: &Setting,
     parameter: Parameter,
@@ -156,9 +154,9 @@ fn breakpoints(
     })
 }
 
-/// The last value of `parameter` below a jump of the groups, and the first one above it. The slope
-/// of a table jumps at its first and at its last speed, which themselves belong to the curve
-/// between them.
+/// For each jump of the groups, the last value of `parameter` below it and the first one above it.
+/// The slope of a table jumps at its first and at its last speed, which themselves belong to the
+/// curve between them.
 pub(super) fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
     let law = setting.friction_law()?;
     let (Parameter::V0, Some(Kind::Table(table))) =
@@ -217,8 +215,8 @@ mod tests {
         Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap()
     }
 
-    /// The number of unstable roots by the argument principle changes, along every column of the
-    /// plane, where a curve is, and only there.
+    /// Along every column of the plane, the number of unstable roots by the argument principle
+    /// changes exactly at the curves.
     #[test]
     fn curves_bound_the_counts_on_both_sides_of_the_ends_of_a_table() {
         let (mut changes, mut beyond) = (0, 0);
@@ -233,7 +231,7 @@ mod tests {
             let curves = traced.curves[0].curves.as_ref().unwrap();
             let columns = plan.spec.axes[0].values.iter().enumerate();
             for (i, &v0) in columns.filter(|(i, _)| (1..60).contains(i)) {
-                // Where the curves are in this column.
+                // The curves in this column.
                 let mut at: Vec<f64> = Vec::new();
                 for piece in &curves.pieces {
                     for pair in piece.vertices.windows(2) {

@@ -11,11 +11,11 @@ use crate::sweep::plan::Plan;
 pub struct TileBuffers {
     /// Status of each cell, see [`crate::linear::status`].
     pub status: Vec<u8>,
-    /// Number of unstable roots, if asked for.
+    /// Number of unstable roots, if requested.
     pub n_unstable: Option<Vec<u16>>,
-    /// The fields stored as u8 that are asked for, in their order: kinds and small counts.
+    /// The requested fields stored as u8, in their order: kinds and small counts.
     pub kinds: Vec<Column<u8>>,
-    /// The other fields that are asked for, in their order.
+    /// The other requested fields, in their order.
     pub columns: Vec<Column>,
 }
 
@@ -42,7 +42,7 @@ impl TileBuffers {
         Self::of_cells(plan, plan.tiles.tile_cells())
     }
 
-    /// Buffers for so many cells of `plan`, all fill values.
+    /// Buffers for `cells` cells of `plan`, all fill values.
     pub(in crate::sweep) fn of_cells(plan: &Plan, cells: usize) -> Self {
         let fields = &plan.spec.fields;
         Self {
@@ -55,7 +55,7 @@ impl TileBuffers {
         }
     }
 
-    /// Takes the cells at the places `there` of other buffers of the same plan to the places `at`.
+    /// Copies the cells at the places `there` of other buffers of the same plan to the places `at`.
     pub(in crate::sweep) fn take_cells(
         &mut self,
         at: Range<usize>,
@@ -75,7 +75,8 @@ impl TileBuffers {
         }
     }
 
-    /// Stores what `value` gives for each field but counts in the cell at `place`; NaN is no value.
+    /// Stores the result of `value` for each field but counts, in the cell at `place`; NaN is no
+    /// value.
     pub(super) fn put(&mut self, place: usize, value: impl Fn(Field) -> Option<f64>) {
         for column in &mut self.kinds {
             if let Some(value) = value(column.field) {
@@ -107,7 +108,7 @@ fn take<T: Copy>(to: &mut [T], from: &[T], (at, there): &(Range<usize>, Range<us
     to[at.clone()].copy_from_slice(&from[there.clone()]);
 }
 
-/// A kind or a small count, saturating below [`FEW_FILL`]; that for NaN.
+/// A kind or a small count, saturating below [`FEW_FILL`], which stands for NaN.
 fn few(value: f64) -> u8 {
     if value.is_nan() {
         FEW_FILL
@@ -116,7 +117,7 @@ fn few(value: f64) -> u8 {
     }
 }
 
-/// Columns of so many cells for the fields that are stored so.
+/// Columns of `cells` cells for the fields with this storage.
 fn columns<T: Clone>(
     fields: &[Field],
     stored: &[Storage],
@@ -131,8 +132,8 @@ fn columns<T: Clone>(
     stored.map(column).collect()
 }
 
-/// Leaves one zero and one NaN: of 0/0, of the larger of both zeros and the like processors choose
-/// the sign themselves.
+/// Replaces all zeros by +0 and all NaNs by one NaN. Processors differ in the signs that they give
+/// to 0/0, the larger of two zeros and the like.
 pub(super) fn one_zero_and_one_nan(cells: &mut [f64]) {
     for cell in cells {
         *cell = if cell.is_nan() { f64::NAN } else { *cell + 0.0 };

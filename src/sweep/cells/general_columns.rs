@@ -1,4 +1,4 @@
-//! The cells of a line of a general system: counts, roots, and why a cell is not like others.
+//! The cells of a line of a general system: counts, roots, and the reasons of special cells.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,31 +21,31 @@ use crate::sweep::cells::root_columns::relaxation_time;
 /// A line of cells, or a part of it.
 pub(super) struct GeneralLine<'a> {
     pub system: &'a System,
-    /// The loop whose gains are known, if there is one.
+    /// The feedback loop with known gains, if there is one.
     pub of_loop: Option<&'a FeedbackLoop>,
     /// √(M/κ).
     pub time_unit: f64,
     /// κ/κ_c, NaN where friction has no state.
     pub stiffness_ratio: f64,
-    /// How much each group grows with its parameter.
+    /// The derivative of each group with respect to its parameter.
     pub per_parameter: Groups,
     /// The delays, increasing, in the units of the sweep.
     pub delays: &'a Delays,
-    /// The index of the first of them on the whole line.
+    /// The index of the first delay on the whole line.
     pub first: usize,
     pub tolerance: MarginalTolerance,
     pub places: Places,
-    /// Once it is set, no more cells are computed that take long.
+    /// Once it is set, no further slow cells are computed.
     pub stop: &'a AtomicBool,
 }
 
-/// Fills the columns of one thread's tiles, with memory that is used again.
+/// Fills the columns of one thread's tiles and reuses its memory.
 #[derive(Debug, Default)]
 pub(super) struct GeneralColumns {
     crossings: DelayLine,
     counts: Vec<u16>,
     status: Vec<u8>,
-    /// No root lies right of the line at which they accumulate.
+    /// Whether no root lies to the right of the line at which roots accumulate.
     no_rightmost: Vec<bool>,
 }
 
@@ -75,7 +75,7 @@ impl GeneralColumns {
         }
     }
 
-    /// Counts, with what they have to say of themselves.
+    /// Counts unstable roots, with their statuses.
     fn count(&mut self, line: &GeneralLine) {
         let len = line.delays.values().len();
         self.counts.resize(len, 0);
@@ -141,7 +141,7 @@ impl GeneralColumns {
         let len = line.delays.values().len();
         let known = match (self.crossings.uncounted, line.system.class()) {
             (false, _) => len,
-            // Without delay there is one more polynomial.
+            // Without a delay, D is a polynomial and has finitely many roots.
             (true, Class::Infinite) if line.delays.values()[0] == 0.0 => 1,
             (true, _) => 0,
         };
@@ -182,7 +182,7 @@ impl GeneralColumns {
         }
     }
 
-    /// Finds the cells where no root lies right of the line at which they accumulate.
+    /// Finds the cells where no root lies to the right of the line at which roots accumulate.
     fn find_accumulations(&mut self, line: &GeneralLine, counter: &RootCounter, known: usize) {
         for (tau, no_rightmost) in line.delays.values()[..known]
             .iter()
@@ -195,7 +195,7 @@ impl GeneralColumns {
         }
     }
 
-    /// Cells without a rightmost root.
+    /// Fills the cells without a rightmost root.
     fn fill_accumulations(
         &mut self,
         line: &GeneralLine,
@@ -219,7 +219,7 @@ impl GeneralColumns {
         }
     }
 
-    /// What the system tells besides counts and roots.
+    /// Fills the quantities of the system besides counts and roots.
     fn fill_linear(&self, line: &GeneralLine, buffers: &mut TileBuffers) {
         let wanted = |field: Field| matches!(field.source(), Source::Linear(_));
         let kinds = buffers.kinds.iter().any(|c| wanted(c.field));
@@ -227,7 +227,7 @@ impl GeneralColumns {
         if !kinds && !numbers {
             return;
         }
-        // The reason is the same all along most lines, and maps have it unasked.
+        // Every map has the reason, and on most lines it is the same in all cells.
         if !numbers && !self.no_rightmost.contains(&true) {
             let reason = self.crossings.reason.map_or(0, Reason::number);
             let len = line.delays.values().len();

@@ -1,5 +1,4 @@
-//! The fields of the limit of a short delay: v_c in closed form, and the letter's approximations of
-//! it.
+//! The fields of the limit of a short delay: v_c in closed form, and the letter's approximations.
 
 use super::buffers::TileBuffers;
 use crate::critical::limit::LimitCell;
@@ -9,7 +8,7 @@ use crate::sweep::input::source::Source;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of};
 
-/// Computes the cells of `tile`, whose places in `buffers` go by `strides`.
+/// Computes the cells of `tile`; `strides` are those of `buffers`.
 pub(super) fn fill(plan: &Plan, tile: &Tile, strides: &[usize], buffers: &mut TileBuffers) {
     let mut setting = plan.spec.fixed.clone();
     for_each_index(&tile.extent, None, |inside| {

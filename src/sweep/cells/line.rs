@@ -1,4 +1,4 @@
-//! A line of cells: where they are in the buffers of a tile and in the map.
+//! A line of cells: its places in the buffers of a tile and in the map.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,7 +10,7 @@ use crate::sweep::input::setting::Setting;
 pub(super) struct Places {
     /// Place of the first cell.
     pub at: usize,
-    /// From cell to cell.
+    /// Distance between neighbouring cells.
     pub stride: usize,
 }
 
@@ -21,7 +21,7 @@ impl Places {
         self.at + i * self.stride
     }
 
-    /// Copies the cells of a line to where they belong.
+    /// Copies the cells of a line to their places.
     #[inline]
     pub(super) fn copy<T: Copy>(self, from: &[T], to: &mut [T]) {
         if self.stride == 1 {
@@ -50,11 +50,11 @@ impl Places {
 pub(super) struct Numbers {
     /// Number of the first cell.
     pub first: u64,
-    /// From cell to cell.
+    /// Difference between neighbouring cells.
     pub step: u64,
 }
 
-/// A line whose cells take so long that a stop is heeded between them.
+/// A line whose cells take so long that `stop` is checked between them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SlowLine<'a> {
     /// All parameters but the delay.
@@ -62,7 +62,7 @@ pub(super) struct SlowLine<'a> {
     pub delays: &'a [f64],
     pub places: Places,
     pub numbers: Numbers,
-    /// Once it is set, no more cells are computed.
+    /// Once it is set, no further cells are computed.
     pub stop: &'a AtomicBool,
 }
 
@@ -82,7 +82,7 @@ impl SlowLine<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Visits the cells one after the other, until a stop.
+    /// Visits the cells in order, until a stop.
     pub(super) fn each(&self, mut visit: impl FnMut(Here)) {
         let mut setting = self.setting.clone();
         for (i, tau) in self.delays.iter().enumerate() {

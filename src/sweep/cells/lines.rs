@@ -1,4 +1,4 @@
-//! The linear models of one line of cells after the other.
+//! The linear models of lines of cells, one line after the other.
 
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
 use crate::sweep::input::linear_model::LinearModel;
@@ -8,18 +8,18 @@ use crate::sweep::input::setting::Setting;
 use crate::sweep::input::system::Evaluation;
 use crate::sweep::plan::Plan;
 
-/// The groups of one line after the other. What does not change from line to line is not computed
+/// The groups of one line after the other. What does not change between lines is not computed
 /// again.
 pub(super) struct Lines<'p> {
     plan: &'p Plan,
     pub(super) setting: Setting,
     /// Index of the setting along each axis.
     index: Vec<usize>,
-    /// Some line may be beyond the letter's own system.
+    /// Whether some line may go beyond the letter's own system.
     beyond_letter: bool,
-    /// Room for the expressions of a system from a file.
+    /// Scratch space for the expressions of a system from a file.
     evaluation: Evaluation,
-    /// What the gains do not change.
+    /// The part of the model that the gains do not change.
     uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
 }
 
@@ -64,7 +64,7 @@ impl<'p> Lines<'p> {
             }
             let model = self.setting.linear()?;
             if matches!(model.0, LinearModel::General(_)) {
-                // Rates of its parameters are needed all the same.
+                // The rates of its parameters are needed nevertheless.
                 self.groups()?;
                 return Ok(model);
             }
@@ -85,8 +85,8 @@ impl<'p> Lines<'p> {
         Ok((groups, oscillator.time_unit()))
     }
 
-    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v,
-    /// a_n per α_N.
+    /// The derivative of each group with respect to its parameter on the current line: b per μ_K′,
+    /// a_v per α_v, a_n per α_N.
     pub(super) fn groups_per_parameter(&self) -> Groups {
         match &self.uncontrolled {
             Some(Ok((oscillator, sliding))) => {

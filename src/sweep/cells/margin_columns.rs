@@ -1,4 +1,4 @@
-//! The fields that tell how far a cell is from the boundary of stability.
+//! The fields of margins: how far a cell is from the boundary of stability.
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
@@ -16,17 +16,17 @@ pub(super) struct MarginColumns {
     radius: bool,
 }
 
-/// The margins of a cell; NaN where none is asked for.
+/// The margins of a cell; NaN for those that are not requested.
 #[derive(Clone, Copy)]
 struct Found {
     gain: Limits,
     of_loop: LoopMargins,
     radius: f64,
-    /// A search was given up.
+    /// Whether a search was given up.
     gave_up: bool,
 }
 
-/// Where sliding is not stable, nothing is left of any margin.
+/// The margins of unstable sliding: 0, and no factors of the gains.
 const UNSTABLE: Found = Found {
     gain: Limits {
         lower: f64::NAN,
@@ -41,7 +41,7 @@ const UNSTABLE: Found = Found {
 };
 
 impl MarginColumns {
-    /// For these fields; none where none of them is a margin.
+    /// The columns for these fields; none without a margin.
     pub(super) fn new(fields: &[Field]) -> Option<Self> {
         use OfMargins::{GainLower, GainUpper, Latency, Phase, StabilityRadius};
         let wants = |wanted: &[OfMargins]| {
@@ -77,7 +77,7 @@ impl MarginColumns {
 
     fn at(&mut self, here: &Here) -> Found {
         let around = Around::of(here.setting, 0.0);
-        // The line was not refused: its parameters are within the model's range.
+        // The line was accepted, so its parameters are within the model's range.
         let Some(around) = around.ok().filter(Around::stable) else {
             return UNSTABLE;
         };

@@ -1,4 +1,4 @@
-//! Margins of a setting in the units in which it is given.
+//! Margins of a setting, in its own units.
 
 use crate::linear::margins::{
     self, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach, SlidingLaw,
@@ -7,7 +7,7 @@ use crate::model::{Control, FrictionLaw, ModelError, Oscillator};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 
-/// A setting whose margins are asked for.
+/// A setting and the decay required of it.
 #[derive(Debug, Clone)]
 pub struct Around {
     of: margins::Setting,
@@ -18,7 +18,7 @@ pub struct Around {
 }
 
 impl Around {
-    /// All roots have to decay at least at the rate `decay` ≥ 0, in 1/time.
+    /// All roots must decay at least at the rate `decay` ≥ 0, in 1/time.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -44,7 +44,7 @@ impl Around {
         self.of.stable()
     }
 
-    /// The factors of both gains at which that is lost.
+    /// The factors of both gains at which stability, or the required decay, is lost.
     pub fn gain(&self, search: &mut Margins) -> Limits {
         search.gain(&self.of)
     }
@@ -64,7 +64,7 @@ impl Around {
         scaled(margins::delay(&self.of), self.oscillator.time_unit())
     }
 
-    /// The slopes μ′ at which it is lost, or, with a friction law, the sliding velocities.
+    /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
     pub fn third(&self, search: &mut Margins) -> (Parameter, Limits) {
         if let Some((law, v0)) = self.sliding() {
             return (Parameter::V0, margins::velocity(&self.of, &law, v0));
@@ -75,7 +75,7 @@ impl Around {
         (Parameter::MuPrime, scaled(search.slope(&self.of), slope))
     }
 
-    /// Up to where upper limits are looked for that are told as infinite.
+    /// The ends of the searches for upper limits; a limit beyond is given as infinite.
     #[must_use]
     pub fn reach(&self) -> Reach {
         let (reach, unit) = (self.of.reach(), self.oscillator.time_unit());
@@ -86,7 +86,7 @@ impl Around {
         }
     }
 
-    /// Up to which v0 limits are looked for; none where there is no friction law.
+    /// The largest v0 of the search for limits; none without a friction law.
     #[must_use]
     pub fn highest_v0(&self) -> Option<f64> {
         self.law.as_ref().map(|(_, v0)| v0 * MOST_VELOCITIES)

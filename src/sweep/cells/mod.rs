@@ -1,9 +1,9 @@
-//! The cells of a tile, and what belongs to planes of cells: one thread's work.
+//! One thread's work: the cells of a tile, and the curves and best settings of planes.
 //!
 //! - `any_plane`: curves of a plane of any two parameters of any system
-//! - `basin`: the share of starts that slides, with its error: points of a scrambled Sobol
+//! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
 //!   sequence, followed and counted; the only file that imports sobol_burley
-//! - `basin_columns`: fields that come from motions from many starts
+//! - `basin_columns`: fields from motions with many starts
 //! - `best`: best settings in physical units, the ranges searched by default
 //! - `best_of_system`: best settings of a system from a file
 //! - `boundaries`: crossing curves of a whole sweep, plane by plane
@@ -11,18 +11,19 @@
 //! - `general_columns`: the cells of a line of a general system: counts, margins, roots, reasons
 //! - `limit_columns`: the fields of the limit of a short delay: the closed form, approximations,
 //!   errors
-//! - `line`: a line of cells: its places, and the loop over cells that take long
-//! - `lines`: the linear models of its lines, without computing again what stays
-//! - `margin_columns`: the fields that tell how far a cell is from the boundary of stability
-//! - `margins`: margins of a setting in the units in which it is given
-//! - `root_columns`: fields that come from roots: from dimensionless roots to physical values
-//! - `samples`: its samples, refused or thinned where there are too many
-//! - `second_look`: a cell looked at by methods that did not compute it
-//! - `slip_columns`: fields that come from motions: every cell's block followed to its outcome
+//! - `line`: a line of cells: its places, and the loop over slow cells
+//! - `lines`: the linear models of lines, without computing again what does not change
+//! - `margin_columns`: the fields of margins: how far a cell is from the boundary of stability
+//! - `margins`: margins of a setting, in its own units
+//! - `root_columns`: fields from roots: from dimensionless roots to physical values
+//! - `samples`: the samples of a motion, refused or thinned where there are too many
+//! - `second_look`: checks of a cell by methods that did not compute it
+//! - `slip_columns`: fields from motions: every cell's block followed to its outcome
 //! - `trace`: a motion sampled over time, with its events
-//! - `vc`: the critical velocity of a setting by either protocol, and what a working velocity is
-//!   good for; the check by simulation
-//! - `vc_columns`: fields of the critical velocity: every cell's, and the sample that is recomputed
+//! - `vc`: the critical velocity of a setting by either protocol, the regime of a working velocity,
+//!   and the check by simulation
+//! - `vc_columns`: fields of the critical velocity, for every cell, and the sample that is
+//!   recomputed
 //! - `worker`: one thread's work: the cells of a tile, line by line
 
 mod any_plane;

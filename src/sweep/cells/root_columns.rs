@@ -1,5 +1,4 @@
-//! The fields that come from characteristic roots: from the dimensionless roots of a cell to
-//! physical values.
+//! The fields from characteristic roots: from the dimensionless roots of a cell to physical values.
 
 use num_complex::Complex64;
 
@@ -14,12 +13,12 @@ use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::{FeedbackLoop, PerGroup};
 use crate::sweep::input::source::{OfRoots, Slope, Source};
 
-/// An equation whose roots move with the groups.
+/// An equation with roots that depend on the groups.
 pub(super) trait Moving: Equation {
-    /// What is known of how they move.
+    /// What is known of this dependence.
     type Loop: Copy;
 
-    /// How the root `lambda` moves at the delay `tau`.
+    /// The sensitivity of the root `lambda` at the delay `tau`.
     fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity;
 }
 
@@ -32,7 +31,7 @@ impl Moving for Groups {
 }
 
 impl<'l> Moving for &'l RootCounter {
-    /// NaN for the groups where there is no such loop.
+    /// Without a loop, derivatives with respect to the groups are NaN.
     type Loop = Option<&'l FeedbackLoop>;
 
     fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity {
@@ -59,11 +58,12 @@ pub(super) struct Line<'a, E: Moving> {
     pub of_loop: E::Loop,
     /// √(M/κ).
     pub time_unit: f64,
-    /// How much each group grows with its parameter: b per μ_K′, a_v per α_v, a_n per α_N.
+    /// The derivative of each group with respect to its parameter: b per μ_K′, a_v per α_v, a_n
+    /// per α_N.
     pub per_parameter: Groups,
     /// The delays, increasing, in the units of the sweep.
     pub delays: &'a [f64],
-    /// The index of the first of them on the whole line.
+    /// The index of the first delay on the whole line.
     pub first: usize,
 }
 
@@ -74,7 +74,7 @@ pub(super) struct RootColumns {
 }
 
 impl RootColumns {
-    /// For these fields; none where none of them needs roots.
+    /// The columns for these fields; none if no field needs roots.
     pub(super) fn new(fields: &[Field]) -> Option<Self> {
         let wanted = fields.iter().map(|f| f.roots_needed()).max()?;
         let slope = |f: &Field| matches!(f.source(), Source::Roots(OfRoots::Derivative(_)));
@@ -84,15 +84,15 @@ impl RootColumns {
         })
     }
 
-    /// Whether derivatives of the abscissa are asked for.
+    /// Whether derivatives of the abscissa are requested.
     pub(super) fn sensitive(&self) -> bool {
         self.sensitive
     }
 
     /// Computes the cells of a line into `columns`, at `places`.
     ///
-    /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to
-    /// say.
+    /// `counts` are the numbers of unstable roots. The flags of root tracking are added to
+    /// `status`.
     pub(super) fn fill<E: Moving>(
         &mut self,
         line: &Line<E>,
@@ -112,7 +112,7 @@ impl RootColumns {
                 }
                 _ => [f64::NAN; 4],
             };
-            // Without control or delay there is one pair; else a root that is not there was not
+            // Without control or delay there is only one pair. Otherwise a missing root was not
             // found.
             let beyond = if line.equation.uncontrolled() || line.delays[i] == 0.0 {
                 f64::NEG_INFINITY
@@ -135,7 +135,7 @@ impl RootColumns {
 /// The value of a field in a cell, in units of the sweep; none for fields that do not come from
 /// roots.
 ///
-/// NaN where nothing converged; a root beyond the last one has the real part `beyond`.
+/// NaN where nothing converged. A root after the last one has the real part `beyond`.
 #[inline]
 fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64, beyond: f64) -> Option<f64> {
     let converged = !cell.roots.is_empty();
@@ -170,8 +170,9 @@ pub fn relaxation_time(abscissa: f64) -> f64 {
     }
 }
 
-/// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]: Re λ/T with T
-/// = √(M/κ), by the chain rule over τ/T and the groups, each proportional to its parameter.
+/// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]. The abscissa
+/// is Re λ/T with T = √(M/κ); the chain rule goes over τ/T and the groups, each proportional to its
+/// parameter.
 #[inline]
 fn slopes<E: Moving>(line: &Line<E>, sensitivity: &Sensitivity) -> [f64; 4] {
     let (unit, per) = (line.time_unit, line.per_parameter);

@@ -1,14 +1,14 @@
-//! The samples of a motion, within limits.
+//! The samples of a motion, up to a limit.
 
 use super::trace::Sample;
 
-/// What becomes of samples beyond a number of them.
+/// What happens to samples beyond a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Most {
-    /// So many are too many.
+    /// This many are refused.
     Refused(usize),
-    /// So many are thinned: every second one goes, and so on, but for those at events. As many
-    /// events are too many.
+    /// This many are thinned, repeatedly: every second sample goes, except those at events. This
+    /// many events are refused.
     Thinned(usize),
 }
 
@@ -20,15 +20,15 @@ impl Most {
     }
 }
 
-/// Samples at strictly growing times.
+/// Samples at strictly increasing times.
 #[derive(Debug)]
 pub(super) struct Samples {
     most: Most,
-    /// With those that are never thinned out.
+    /// Samples, each with a flag: true if it is never thinned out.
     kept: Vec<(Sample, bool)>,
-    /// Of samples that may be thinned out, one of so many is kept.
+    /// Of the samples without the flag, one in this many is kept.
     stride: usize,
-    /// How many were left out since the last one.
+    /// How many were left out since the last one that was kept.
     passed: usize,
 }
 
@@ -42,7 +42,7 @@ impl Samples {
         }
     }
 
-    /// The most that there may be.
+    /// The limit.
     pub(super) fn most(&self) -> usize {
         self.most.number()
     }
@@ -52,8 +52,8 @@ impl Samples {
         self.kept.len() > self.most()
     }
 
-    /// Adds a sample, unless there is one at its time or it is thinned out. One that is `marked`
-    /// stays.
+    /// Adds a sample, unless there is already one at its time or it is thinned out. A `marked`
+    /// sample is never thinned out.
     pub(super) fn add(&mut self, marked: bool, sample: impl FnOnce() -> Sample) {
         if !marked {
             self.passed += 1;
@@ -72,7 +72,7 @@ impl Samples {
         }
     }
 
-    /// Leaves out every second of those that may be.
+    /// Removes every second of the samples that may be thinned out.
     fn thin(&mut self) {
         let mut odd = false;
         self.kept.retain(|(_, marked)| {

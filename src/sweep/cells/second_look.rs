@@ -1,4 +1,4 @@
-//! A cell of a map, looked at once more by methods that did not compute it.
+//! Checks of a cell of a map by methods that did not compute it.
 
 use super::basin::{Asked, STUDENT_95, Tally};
 use super::vc;
@@ -17,28 +17,29 @@ use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
-/// What a map holds of one cell.
+/// The stored contents of one cell of a map.
 pub struct Stored<'a> {
     /// The status.
     pub status: u8,
-    /// A field's value as a number; NaN where it has none, and for fields that are not there.
+    /// The value of a field; NaN where it has none, and for fields that the map lacks.
     pub value: &'a dyn Fn(Field) -> f64,
 }
 
-/// What a second method was asked.
+/// A question to a second method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Question {
     /// The number of unstable roots, by the argument principle.
     Count,
-    /// Whether a root has the abscissa, and none lies right of it, by the argument principle.
+    /// Whether some root has the abscissa as real part and none lies to its right, by the argument
+    /// principle.
     Abscissa,
-    /// What becomes of the motion, followed by collocation.
+    /// The outcome of the motion, followed by collocation.
     Outcome,
-    /// The share of starts that slides, from other starts, followed by collocation.
+    /// The share of starts that end in sliding, from other starts, followed by collocation.
     BasinShare,
     /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
-    /// The critical velocity by switching on: what becomes of stick-slip just below and just above
+    /// The critical velocity by switching on: whether stick-slip survives just below and just above
     /// it, by collocation.
     SwitchOn,
 }
@@ -54,7 +55,7 @@ impl Question {
         Self::SwitchOn,
     ];
 
-    /// In words: what is compared with what.
+    /// What is compared with what, in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -68,15 +69,15 @@ impl Question {
     }
 }
 
-/// What a second method answered.
+/// The answer of a second method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// It found the same.
+    /// It found the same result.
     Agrees,
-    /// It found something else.
+    /// It found another result.
     Differs,
-    /// The cell says itself that it is marginal, not converged or in dispute, or the method cannot
-    /// tell there.
+    /// The cell is marked as marginal, not converged or in dispute, or the method has no answer
+    /// there.
     Open,
 }
 
@@ -137,8 +138,8 @@ fn told(same: bool) -> Answer {
     }
 }
 
-/// The number of roots right of a line by the argument principle, the largest number there is where
-/// there are infinitely many; none where it does not tell.
+/// The number of roots to the right of a line, by the argument principle: the largest u64 for
+/// infinitely many, none where it is unknown.
 type RightOf = dyn Fn(f64) -> Option<u64>;
 
 fn right_of(model: &LinearModel, tau: f64) -> Box<RightOf> {
@@ -181,13 +182,13 @@ fn abscissa(right_of: &RightOf, unit: f64, stored: &Stored) -> Answer {
     let margin = margin.max(1e-12) * abscissa.abs().max(1.0);
     match (right_of(abscissa + margin), right_of(abscissa - margin)) {
         (Some(beyond), Some(reached)) => told(beyond == 0 && reached > 0),
-        // A NaN is no abscissa, and the status does not say why.
+        // The abscissa is NaN, and the status does not say why.
         _ if abscissa.is_nan() => Answer::Differs,
         _ => Answer::Open,
     }
 }
 
-/// The error allowed in a step of collocation at least.
+/// The smallest error allowed in a step of collocation.
 const SECOND_TOLERANCE: f64 = 1e-11;
 
 fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, ModelError> {
@@ -218,10 +219,11 @@ fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, Mo
     })
 }
 
-/// Starts of a second look at a share, at most.
+/// The most starts of a second look at a share.
 const SECOND_STARTS: u32 = 64;
-/// How far two shares may be apart: so many times what one in twenty is. Of a thousand pairs none
-/// is, and a look at a hundred cells must not cry wolf.
+/// How far two shares may be apart, as a multiple of the difference that one pair in twenty
+/// exceeds. Not one pair in a thousand is this far apart: checking a hundred cells must not raise
+/// false alarms.
 const APART: f64 = 3.0;
 
 fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
@@ -233,7 +235,7 @@ fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
     let Ok(Some(asked)) = Asked::of(setting, &plan.spec.simulation, basin) else {
         return Answer::Open;
     };
-    // That it is 0 follows from the number of unstable roots, which is another question.
+    // A share of 0 follows from the number of unstable roots, which is another question.
     if let Some(known) = asked.known() {
         return told(share == known.share || (share.is_nan() && known.share.is_nan()));
     }
@@ -286,11 +288,11 @@ fn critical_velocity(
     Ok(agrees.map_or(Answer::Open, told))
 }
 
-/// How far from an edge stick-slip is switched on, relative.
+/// Relative distance from an edge at which control is switched on in stick-slip.
 const BESIDE: f64 = 1e-4;
 
-/// Whether stick-slip survives switching on just below the critical velocity and not just above it.
-/// The worst of many phases is left open: it would take as many motions.
+/// Whether stick-slip survives switching on just below the critical velocity, and not just above
+/// it. The worst of many phases stays open: it would take as many motions.
 fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answer, ModelError> {
     let vc = (stored.value)(Field::Vc);
     let lost = f64::from(number_of_transition(Transition::Lost));

@@ -1,4 +1,4 @@
-//! The fields that come from motions: every cell's block is followed to its outcome.
+//! The fields from motions: the block of every cell is followed to its outcome.
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
@@ -15,26 +15,26 @@ use crate::sweep::input::spec::SweepSpec;
 /// Fills the columns of one thread's tiles.
 pub(super) struct SlipColumns<'p> {
     simulation: &'p Simulation,
-    /// The memory of all motions.
+    /// Memory shared by all motions.
     motion: Option<Motion>,
     sliding: KnownSliding,
 }
 
-/// What is known of sliding in the cells of the line followed last. Lines that differ in nothing
-/// but the motions' start share it.
+/// Stability of sliding in the cells of the last line. Lines that differ only in the start of the
+/// motion share it.
 #[derive(Default)]
 struct KnownSliding(Vec<Option<Known>>);
 
-/// The spectral abscissa of sliding at one place, if it is stable there.
+/// The spectral abscissa of sliding in one cell, if it is stable there.
 #[derive(Clone, Copy)]
 struct Known {
-    /// Sliding there, and the unit of time.
+    /// Sliding in this cell, and the unit of time.
     of: (Sliding, f64),
     abscissa: Option<f64>,
 }
 
 impl<'p> SlipColumns<'p> {
-    /// For the fields of a sweep; none where none of them comes from motions.
+    /// The columns of a sweep; none without a field of motions.
     pub(super) fn new(spec: &'p SweepSpec) -> Option<Self> {
         spec.follows_motions().then(|| Self {
             simulation: &spec.simulation,
@@ -58,12 +58,13 @@ impl<'p> SlipColumns<'p> {
         });
     }
 
-    /// What becomes of the motion in a cell.
+    /// The outcome of the motion in a cell.
     fn motion_at(&mut self, here: &Here) -> Summary {
         match self.follow(here) {
             Ok(Some(summary)) => summary,
             Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Summary::without(Outcome::NoCycle),
-            // The sweep's values were checked: what is refused here is beyond what can be followed.
+            // The values of the sweep are checked: an error here means that the motion cannot be
+            // followed.
             Ok(None) | Err(_) => Summary::without(Outcome::Undecided),
         }
     }

@@ -8,7 +8,7 @@ use crate::slip::outcome::{Observer, Outcome, Summary};
 use crate::slip::stop::Stop;
 use crate::sweep::input::case_file::{CaseSpec, Sampling};
 
-/// More samples than this make no trace: some 300 MB.
+/// The most samples of a trace: some 300 MB.
 pub const MOST_SAMPLES: usize = 2_000_000;
 
 /// Modes by their numbers in a trace, with their names.
@@ -36,7 +36,7 @@ pub enum TraceError {
     /// It would be too long.
     #[error("the trace would have more than {0} samples or events")]
     TooLong(usize),
-    /// The delay is too long for its steps.
+    /// Two delays take more steps than are kept.
     #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
     OutgrowsPast,
     /// It was stopped before it was complete.
@@ -59,7 +59,7 @@ pub struct Sample {
     pub v: f64,
     /// Normal load.
     pub n: f64,
-    /// What the block does from this time on.
+    /// The mode of the block from this time on.
     pub mode: Mode,
 }
 
@@ -83,13 +83,13 @@ impl TraceEvent {
     }
 }
 
-/// A motion with what became of it.
+/// A motion with its outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
-    /// Samples at strictly growing times, from 0 to the end of the trace. Every event has one;
-    /// where v or N jump, at switch-on, the one before it is next to it.
+    /// Samples at strictly increasing times, from 0 to the end of the trace. Every event has one.
+    /// At switch-on, where v or N jumps, there is another one just before it.
     pub samples: Vec<Sample>,
-    /// All events until the outcome was known and to the end of the trace.
+    /// All events, until the outcome is known and to the end of the trace.
     pub events: Vec<TraceEvent>,
     /// The outcome.
     pub summary: Summary,
@@ -104,11 +104,11 @@ impl Trace {
         Self::within(spec, Most::Refused(MOST_SAMPLES), &Stop::default())
     }
 
-    /// Follows the case of `spec` with no more samples and events than `most`, until `stop` is
-    /// set, which is heeded with every step.
+    /// Follows the case of `spec` with at most `most` samples and events. `stop` is checked at
+    /// every step.
     ///
     /// # Errors
-    /// As [`Trace::of`], and when it was stopped.
+    /// As [`Trace::of`], and when it is stopped.
     pub fn within(spec: &CaseSpec, most: Most, stop: &Stop) -> Result<Self, TraceError> {
         let case = &spec.case;
         let longest = most.number();
@@ -133,8 +133,8 @@ impl Trace {
         let sampling = sampling(spec.sampling, until, most);
         let mut recorder = Recorder::new(case, (sampling, most), stop)?;
         recorder.record(until)?;
-        // One motion twice, to rounding: a step that goes on to the end of what is asked for ends
-        // elsewhere. Events of samples first.
+        // The same motion was followed twice and agrees up to rounding: a step that is cut at the
+        // end of the trace ends elsewhere. The events of the sampled motion come first.
         let mut events = recorder.events;
         let both = events.len();
         events.extend(listed.events.into_iter().skip(both));
@@ -167,7 +167,8 @@ impl Trace {
     }
 }
 
-/// How to sample until then: intervals of which there are too many become longer by a whole number.
+/// How to sample until `until`: if there are too many intervals, they are lengthened by a whole
+/// factor.
 fn sampling(asked: Sampling, until: f64, most: Most) -> Sampling {
     match (asked, most) {
         (Sampling::Interval(interval), Most::Thinned(most)) => {
@@ -178,7 +179,7 @@ fn sampling(asked: Sampling, until: f64, most: Most) -> Sampling {
     }
 }
 
-/// Lists the events of a motion.
+/// Collects the events of a motion.
 struct Listed<'s> {
     units: CaseUnits,
     events: Vec<TraceEvent>,
@@ -217,13 +218,13 @@ struct Recorder {
     events: Vec<TraceEvent>,
 }
 
-/// One step of the motion, as it began.
+/// One step of the motion, at its beginning.
 #[derive(Clone, Copy)]
 struct Begun {
     t: f64,
     x: f64,
     mode: Mode,
-    /// An event or the beginning of the trace is there.
+    /// Whether an event or the beginning of the trace is there.
     marked: bool,
 }
 
@@ -283,7 +284,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Samples the last step but for its end.
+    /// Samples the last step, except its end.
     fn sample_step(&mut self, begun: Begun) {
         let length = self.motion.last_step().length;
         match self.sampling {
@@ -307,8 +308,8 @@ impl Recorder {
         }
     }
 
-    /// Samples the end of the last step; `before`: next to it, because the next step begins with
-    /// other values.
+    /// Samples the end of the last step. `before`: just before it, because the next step begins
+    /// with other values.
     fn sample_end(&mut self, begun: Begun, before: bool) {
         let length = self.motion.last_step().length;
         let mut sample = Sample::of(&self.motion, self.units, begun, length);
@@ -372,7 +373,7 @@ mod tests {
         assert!(samples.windows(2).all(|w| w[0].t < w[1].t));
         let last = samples.last().unwrap();
         assert_eq!(Some(last.t), spec.until);
-        // x + a is where the spring is pulled: what v adds up to, by the trapezium rule.
+        // x + a is the position of the pulled end: the integral of v by the trapezium rule.
         let mut pulled = samples[0].a;
         for w in samples.windows(2) {
             pulled += 0.5 * (w[1].t - w[0].t) * (w[0].v + w[1].v);
@@ -418,7 +419,7 @@ mod tests {
         assert_eq!(Trace::of(&spec), Err(TraceError::TooLong(MOST_SAMPLES)));
     }
 
-    /// Of any sampling a part is left, with every event and the end.
+    /// Thinning keeps a part of any sampling, with every event and the end.
     #[test]
     fn what_is_thinned_is_a_part_of_the_whole() {
         for sampling in ["samples = 24", "interval = 0.001"] {

@@ -1,4 +1,4 @@
-//! The critical velocity in the units of a setting, by one protocol or the other.
+//! The critical velocity in the units of a setting, by either protocol.
 
 use crate::critical::switch_on::{self, Phase, Scan, Trials, Windows};
 use crate::critical::{
@@ -18,13 +18,13 @@ use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::NOT_IN_MOTIONS;
 
-/// Error allowed in a step where control is switched on.
+/// Error allowed in a step when control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
 
-/// How many times as many steps a motion may take by collocation.
+/// The factor by which collocation may take more steps.
 pub const MORE_STEPS: u64 = 100;
 
-/// What is asked of a setting: its problem in the units of a motion, and those units.
+/// The problem of a setting in the units of a motion, and those units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asked {
     /// The controlled oscillator.
@@ -33,10 +33,10 @@ pub struct Asked {
     pub units: CaseUnits,
 }
 
-/// What is asked of a setting; its v0 means nothing.
+/// The problem of a setting; its v0 is ignored.
 ///
 /// # Errors
-/// When the setting has no friction law, or a value is out of the model's range: a gain needs a
+/// When the setting has no friction law, or a value is outside the model's range: a gain needs a
 /// delay τ > 0.
 pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
     setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
@@ -69,7 +69,7 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
 }
 
 impl Asked {
-    /// The same, until `stop` is set: answers come soon then, and mean nothing.
+    /// The same problem with a `stop`: once it is set, answers come soon but are meaningless.
     #[must_use]
     pub fn until(mut self, stop: Stop) -> Self {
         self.problem.stop = stop;
@@ -93,8 +93,8 @@ impl Asked {
         }
     }
 
-    /// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at
-    /// velocities beside `vc`: lower and higher by this share of it.
+    /// The fate of stick-slip after switch-on at `phase`, in units of the setting, at two
+    /// velocities: below and above `vc` by this share of it.
     #[must_use]
     pub fn survives_beside(
         &self,
@@ -115,13 +115,13 @@ impl Asked {
         [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
     }
 
-    /// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with
-    /// `found`, the answer by the protocol `follow`: it has to see stick-slip end at the same
-    /// velocity, see [`CriticalVelocity::ends_like`].
+    /// Whether simulation alone agrees with `found`, the answer by the protocol `follow`. It uses
+    /// its own steps of v0 and this `integrator`, and must see stick-slip end at the same velocity,
+    /// see [`CriticalVelocity::ends_like`].
     ///
-    /// Large steps may throw stick-slip from one kind to another, which ends elsewhere: it differs
-    /// where the smallest steps say so, or two larger ones come to the same other end. None where
-    /// that does not tell, or the cell is not decided and claims nothing.
+    /// Large steps may throw stick-slip from one kind to another, which ends elsewhere. The answer
+    /// is therefore false only if the smallest steps disagree, or two larger ones agree on another
+    /// end. None where that is inconclusive, or the cell is undecided and claims nothing.
     #[must_use]
     pub fn simulation_agrees(
         &self,
@@ -157,8 +157,7 @@ impl Asked {
         differs(&others).then_some(false)
     }
 
-    /// The regime of `v0`, in units of the setting, where the critical velocity is `found` by
-    /// `protocol`.
+    /// The regime of `v0`, in units of the setting; `found` is the critical velocity by `protocol`.
     #[must_use]
     pub fn regime_at(
         &self,
@@ -193,9 +192,9 @@ impl Asked {
     }
 
     /// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly
-    /// stable and free of stick-slip, which does not survive above `free`, v_c or its upper bound;
-    /// in units of the setting, as `free`. NaN where sliding is not stable at `v_max`, or there is
-    /// no `free`.
+    /// stable and free of stick-slip. Above `free`, which is v_c or its upper bound, stick-slip
+    /// does not survive. The result and `free` are in units of the setting. NaN where sliding is
+    /// not stable at `v_max`, or `free` is NaN.
     #[must_use]
     pub fn v_smooth(&self, free: f64, v_max: f64) -> f64 {
         let Self { problem, units } = self;
@@ -233,7 +232,7 @@ pub fn find_in_line(
         .collect()
 }
 
-/// By the protocol `follow` there is one window, from rest to where stick-slip ends, or none.
+/// The windows by the protocol `follow`: one from rest to the end of stick-slip, or none.
 fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> CriticalWindows {
     let critical = in_units(found, units);
     let top = match critical.transition {
@@ -250,8 +249,8 @@ fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> C
     }
 }
 
-/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max`
-/// only, or not all v0 were tried.
+/// The windows by switching on. v_c is the topmost edge of the windows. It is NaN where the topmost
+/// window ends only at `v_max`, or where not all v0 were tried.
 fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
     let top = found.top();
     let (vc, transition) = match top {
@@ -306,13 +305,13 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
     }
 }
 
-/// First steps of v0, relative, and those through what ends by chance, where a cell is recomputed:
-/// other ones than where it was computed; and small ones, which throw stick-slip from one kind to
-/// another least, where these lead elsewhere.
+/// Relative first steps of v0 where a cell is recomputed, and the steps through regions where
+/// stick-slip ends by chance. They differ from those of the first computation. The smallest ones
+/// throw stick-slip least from one kind to another; they decide where larger ones lead elsewhere.
 const SAMPLE_STEPS: [[f64; 2]; 3] = [[0.35, 0.1], [0.05, 0.02], [0.02, 0.005]];
-/// The most steps of the integrator there.
+/// The most steps of the integrator in such a search.
 const SAMPLE_TOTAL_STEPS: u64 = 10_000_000;
-/// The errors of a step of the integrator there.
+/// The errors of a step of the integrator in these searches.
 const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
     match integrator {
         Integrator::Taylor => [1e-10, 1e-11, 1e-12],
@@ -320,7 +319,7 @@ const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
     }
 }
 
-/// Whether searches by smaller and smaller steps that came to other ends contradict a cell.
+/// Whether searches by smaller and smaller steps, with other ends, contradict a cell.
 fn differs(others: &[Option<CriticalVelocity>]) -> bool {
     let alike = |pair: &[Option<CriticalVelocity>]| match pair {
         [Some(one), Some(other)] => one.ends_like(other),
@@ -329,18 +328,18 @@ fn differs(others: &[Option<CriticalVelocity>]) -> bool {
     others.last().is_some_and(Option::is_some) || others.windows(2).any(alike)
 }
 
-/// Whether what a simulation came to says anything: one that gave up has found an end, but not that
-/// there is none.
+/// Whether a simulation is conclusive. One that gave up may have found an end, but not that there
+/// is none.
 fn tells(again: &CriticalVelocity) -> bool {
     again.decided || !matches!(again.transition, Transition::Persists | Transition::Never)
 }
 
 /// The regime of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below
-/// both bounds of the critical velocity, above both, or not known.
+/// both bounds of the critical velocity, above both, or undecided.
 fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> RegimeAtV0 {
     let lifts_off = critical.transition == Transition::LiftOff;
     if lifts_off && !critical.sustained {
-        // Without bounds: there is no stick-slip below.
+        // There are no bounds, because there is no stick-slip below.
         return match v0 >= critical.v_liftoff {
             _ if !critical.decided => RegimeAtV0::Undecided,
             true => RegimeAtV0::LiftOff,
@@ -358,9 +357,9 @@ fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> RegimeAtV0 {
     }
 }
 
-/// Velocities at which the count of unstable roots is taken, in each factor of ten.
+/// Velocities per decade at which unstable roots are counted.
 const COUNTS_PER_DECADE: f64 = 64.0;
-/// The smallest velocity at which it is, in units of μ_S N0/√(κM).
+/// The smallest of these velocities, in units of μ_S N0/√(κM).
 const SMALLEST_COUNTED: f64 = 1e-6;
 
 #[cfg(test)]
@@ -412,7 +411,7 @@ mod tests {
         }
     }
 
-    /// What is not decided is known outside its bounds.
+    /// Outside its bounds an undecided critical velocity still gives a regime.
     #[test]
     fn bounds_tell_the_class() {
         for (transition, v_liftoff, classes) in [
@@ -446,8 +445,8 @@ mod tests {
         }
     }
 
-    /// Where a block lifts off that did not stick at lower velocities, nothing is beside sliding
-    /// below.
+    /// If a block lifts off and does not stick at lower velocities, sliding has no stick-slip
+    /// beside it below.
     #[test]
     fn lift_off_without_stick_slip_below() {
         let mut lifted = critical(Transition::LiftOff, f64::NAN, 0.2);
@@ -457,8 +456,8 @@ mod tests {
         }
     }
 
-    /// By the protocol `follow` a window goes from rest to whatever ends stick-slip: v_c, lift-off,
-    /// or the range.
+    /// By the protocol `follow` a window reaches from rest to the end of stick-slip: v_c, lift-off,
+    /// or the end of the range.
     #[test]
     fn whatever_ends_a_window_it_counts() {
         let problem = Problem {
@@ -496,8 +495,8 @@ mod tests {
         assert!(windows(&lifted).is_empty());
     }
 
-    /// A simulation that gave up says nothing of stick-slip that persists or never is; one that
-    /// came to an end says where.
+    /// A simulation that gave up is not conclusive about stick-slip that persists or never exists;
+    /// one that found an end is.
     #[test]
     fn who_gives_up_does_not_agree() {
         for (transition, alone) in [
@@ -513,8 +512,8 @@ mod tests {
         }
     }
 
-    /// The smallest steps contradict, and two of larger ones together; one of these alone may have
-    /// been thrown to where it ends.
+    /// The smallest steps alone contradict, and two larger ones together. A single larger one may
+    /// have been thrown elsewhere.
     #[test]
     fn ends_elsewhere_contradict_together() {
         let at = |vc: f64| Some(critical(Transition::Grazing, vc, f64::NAN));
@@ -530,7 +529,7 @@ mod tests {
         }
     }
 
-    /// The topmost window tells, and one that is open at the end of the range has no edge.
+    /// The topmost window counts, and one that is open at the end of the range has no edge.
     #[test]
     fn windows_tell_the_critical_velocity() {
         let windows = |survives: Vec<[f64; 2]>, v_liftoff| Windows {

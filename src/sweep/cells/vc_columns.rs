@@ -1,5 +1,5 @@
-//! The fields of the critical velocity: every cell's v_c is looked for, and a sample of them a
-//! second time.
+//! The fields of the critical velocity: v_c of every cell, and a second computation for a sample of
+//! them.
 
 use std::ops::Range;
 
@@ -26,11 +26,11 @@ pub(super) struct VcColumns {
     tolerance: MarginalTolerance,
     with_regime: bool,
     smooth: bool,
-    /// The answers of the line looked at last. Lines that differ in nothing but v0 share them.
+    /// The answers of the last line. Lines that differ only in v0 share them.
     known: Vec<Option<Known>>,
 }
 
-/// An answer, and to what.
+/// An answer, with its question.
 struct Known {
     asked: Asked,
     phase: f64,
@@ -46,7 +46,7 @@ impl Known {
 }
 
 impl VcColumns {
-    /// For the fields of a sweep; none where none of them is of the critical velocity.
+    /// The columns of a sweep; none without a field of the critical velocity.
     pub(super) fn new(spec: &SweepSpec) -> Option<Self> {
         Some(Self {
             search: spec.critical?,
@@ -57,8 +57,8 @@ impl VcColumns {
         })
     }
 
-    /// Looks for the critical velocities of a line, into `buffers`. The status gains
-    /// [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`].
+    /// Computes the critical velocities of a line into `buffers`. The status gains
+    /// [`NOT_CONVERGED`] where one stays unknown, [`SAMPLED`] and [`DISAGREE`].
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         let count = line.delays.len();
         if self.search.protocol == Protocol::Follow {
@@ -71,13 +71,14 @@ impl VcColumns {
                 buffers.status[here.place] |= status;
                 store(&cell, buffers, here.place);
             }
-            // The sweep's values were checked: what is refused here is beyond what can be followed.
+            // The values of the sweep are checked: an error here means that the motion cannot be
+            // followed.
             Err(_) => store_nothing(buffers, here.place),
         });
     }
 
-    /// Looks for the answers in a block of a line, which starts where blocks of the whole line do,
-    /// unless they are known.
+    /// Computes the answers in a block of a line, unless they are known. Blocks start where those
+    /// of the whole line do.
     fn find_block(&mut self, line: &SlowLine, block: Range<usize>) {
         if self.known.len() < block.end {
             self.known.resize_with(block.end, || None);
@@ -113,7 +114,7 @@ impl VcColumns {
         }
     }
 
-    /// What is known in a cell, with its status.
+    /// The result of a cell, with its status.
     fn cell(&mut self, here: &Here) -> Result<(VcCell<'_>, u8), ModelError> {
         let asked = vc::asked(here.setting)?;
         let protocol = self.search.protocol.at(here.setting);
@@ -146,7 +147,7 @@ impl VcColumns {
         Ok((cell, status))
     }
 
-    /// The answer to what is asked in the `i`-th cell of a line.
+    /// The answer for the `i`-th cell of a line.
     fn found(
         &mut self,
         asked: &Asked,
@@ -186,7 +187,7 @@ fn store_nothing(buffers: &mut TileBuffers, place: usize) {
     });
 }
 
-/// Whether a cell belongs to the sample of `share` of all cells: by its number alone.
+/// Whether a cell belongs to the sample of `share` of all cells. This depends on its number alone.
 fn is_sampled(number: u64, share: f64) -> bool {
     (mixed(number) >> 11) as f64 * (0.5 * f64::EPSILON) < share
 }

@@ -1,4 +1,4 @@
-//! One thread's work: the cells of a tile, line by line, into buffers that are used again.
+//! One thread's work: the cells of a tile, line by line, into buffers that are reused.
 //!
 //! Longer than most files: each kind of line, of the letter and beyond, is filled from here.
 
@@ -33,44 +33,44 @@ fn delay_margins(columns: &mut [Column]) -> Option<&mut Vec<f64>> {
     column.map(|c| &mut c.cells)
 }
 
-/// Computes tiles into buffers of its own, which it reuses.
+/// Computes tiles into its own buffers, which it reuses.
 pub struct Worker<'p> {
     plan: &'p Plan,
     lines: Lines<'p>,
-    /// The delays of the tile computed last, and which of the plan's they are.
+    /// The delays of the last tile, with their range in the plan.
     delays: Delays,
     delay_range: Range<usize>,
     strides: Vec<usize>,
-    /// Cells between neighbouring delays.
+    /// Distance between cells of neighbouring delays.
     stride: usize,
-    /// The cells of the tile computed last.
+    /// The cells of the last tile.
     pub buffers: TileBuffers,
-    /// Every status in the buffers is zero.
+    /// Whether every status in the buffers is zero.
     unflagged: bool,
     row: RowBuffers,
     /// Follows roots, where a field needs them.
     roots: Option<RootColumns>,
     /// Lines of general systems.
     general: GeneralColumns,
-    /// Whether a field tells of the linear model itself.
+    /// Whether a field is about the linear model itself.
     tells_linear: bool,
-    /// Looks for margins, where a field needs them.
+    /// Computes margins, where a field needs them.
     margins: Option<MarginColumns>,
     /// Follows motions, where a field needs them.
     slip: Option<SlipColumns<'p>>,
     /// Follows many starts, where a field needs them.
     basin: Option<BasinColumns<'p>>,
-    /// Looks for critical velocities, where a field needs them.
+    /// Computes critical velocities, where a field needs them.
     vc: Option<VcColumns>,
-    /// Cells between neighbours along each axis in the whole map.
+    /// Distance between neighbouring cells along each axis in the whole map.
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
-    /// The delay of a cell, where the polynomials of the system depend on it.
+    /// One delay at a time, for systems whose polynomials depend on the delay.
     by_delay: Option<Delays>,
 }
 
-/// One row on its way to a tile whose delays are not next to one another in memory.
+/// A row on its way to a tile whose delays are not contiguous in memory.
 struct RowBuffers {
     status: Vec<u8>,
     n_unstable: Vec<u16>,
@@ -125,8 +125,8 @@ impl<'p> Worker<'p> {
         self.compute_until(tile, &AtomicBool::new(false));
     }
 
-    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes
-    /// long is begun once `stop` is set. False if the tile is not complete.
+    /// Computes the cells of `tile` as [`Worker::compute`] does, but begins no further slow cell
+    /// once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
@@ -257,8 +257,8 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// What the letter's own system tells besides counts and roots: nothing is special but b = 0
-    /// without control, and roots accumulate nowhere.
+    /// Fills the remaining quantities of the letter's own system. Only b = 0 without control is
+    /// special, and roots do not accumulate.
     fn fill_linear(&mut self, crossings: &Crossings, at: usize) {
         let reason = match crossings.always_marginal {
             true => Reason::RootOnAxis.number(),
@@ -315,7 +315,7 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Computes the fields that need roots, in a line whose counts and status are there.
+    /// Computes the fields that need roots, in a line with known counts and statuses.
     fn fill_roots(&mut self, groups: Groups, time_unit: f64, at: usize) {
         let Some(roots) = &mut self.roots else { return };
         let len = self.delays.values().len();
@@ -349,7 +349,7 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// A line in which nothing is known of sliding.
+    /// Fills a line without a sliding state.
     fn fill_without_sliding(&mut self, at: usize) {
         let len = self.delays.values().len();
         for place in (at..).step_by(self.stride).take(len) {
@@ -357,15 +357,15 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Whether cells take so long that a stop is heeded between them.
+    /// Whether cells take so long that `stop` is checked between them.
     fn is_slow(&self) -> bool {
         let follows = self.slip.is_some() || self.basin.is_some();
         self.margins.is_some() || follows || self.vc.is_some()
     }
 
-    /// Computes margins and the fields of motions and of the critical velocity, in a line whose
-    /// status is there; motions where there is a sliding state, margins where it is the letter's,
-    /// with its groups.
+    /// Computes margins and the fields of motions and of the critical velocity, in a line with
+    /// known statuses. Motions need a sliding state; margins need the letter's own, with its
+    /// groups.
     fn fill_slowly(
         &mut self,
         offset: &[usize],
@@ -409,13 +409,13 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// A line outside the model's range: its cells keep fill values and say that nothing converged
-    /// there.
+    /// A line outside the model's range: its cells keep fill values and are flagged as not
+    /// converged.
     fn refuse_line(&mut self, at: usize) {
         self.refuse(at, self.delays.values().len());
     }
 
-    /// The same of the first `len` cells from `at` on.
+    /// The same for the first `len` cells from `at` on.
     fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {

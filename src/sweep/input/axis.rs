@@ -5,7 +5,7 @@ use super::quantity::Quantity;
 use crate::model::Shown;
 use crate::model::elementary::pow;
 
-/// More points than this on one axis are refused.
+/// The most points of one axis.
 pub const MOST_POINTS: u64 = 10_000_000;
 
 /// How the values of an axis are spaced.
@@ -13,7 +13,7 @@ pub const MOST_POINTS: u64 = 10_000_000;
 pub enum Spacing {
     /// Equal steps.
     Linear,
-    /// Equal ratios; on one side of 0.
+    /// Equal ratios; all values on one side of 0.
     Log,
 }
 
@@ -26,9 +26,10 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (p, q): a delay that varies is q, p the
-/// last gain axis, else the last other axis on which linear stability depends. Without one they are
-/// the last two such axes. None where there are no two of them with two values or more.
+/// The axes (p, q) of the planes in which curves can be traced. If the delay varies, it is q, and p
+/// is the last gain axis, or else the last other axis on which linear stability depends. Without a
+/// delay axis, p and q are the last two such axes. Only axes with at least two values count; none
+/// where there are fewer than two of them.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let matters = |axis: &Axis| {
@@ -50,12 +51,12 @@ pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     Some((p, q))
 }
 
-/// Values that make no axis, in words.
+/// Why values do not make an axis, in words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct AxisError(pub String);
 
-/// `points` values from `from` to `to`, each computed from its index alone; both ends exact.
+/// `points` values from `from` to `to`, each computed from its index alone. Both ends are exact.
 ///
 /// # Errors
 /// When the ends are reversed or equal, the number of points is out of range, a logarithmic axis
@@ -103,10 +104,10 @@ pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f
     Ok(values)
 }
 
-/// The index of the one of these values, at least one, that is nearest.
+/// The index of the value nearest to `value`; `values` has at least one.
 ///
 /// # Errors
-/// The range of the values where this one lies outside, by more than rounding; NaN does.
+/// The range of `values`, if `value` is NaN or lies outside it by more than rounding.
 pub fn nearest(values: &[f64], value: f64) -> Result<usize, [f64; 2]> {
     let from = values.iter().copied().fold(f64::INFINITY, f64::min);
     let to = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -120,7 +121,7 @@ pub fn nearest(values: &[f64], value: f64) -> Result<usize, [f64; 2]> {
 }
 
 impl Axis {
-    /// An axis with these values.
+    /// An axis of `parameter` with these values.
     ///
     /// # Errors
     /// When a value is outside the parameter's range, or the values are not strictly monotonic.

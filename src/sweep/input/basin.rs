@@ -1,4 +1,5 @@
-//! Of which starts the share is taken that ends in sliding: the table `[basin]` of a sweep file.
+//! The starts over which the share that ends in sliding is taken: the table `[basin]` of a sweep
+//! file.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -9,17 +10,17 @@ use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
 use crate::model::ModelError;
 
-/// Independent scramblings of the sequence of starts: their spread tells the error of a share, to
-/// 18 %.
+/// Independent scramblings of the sequence of starts. Their spread estimates the error of a share,
+/// to within 18 %.
 pub const SCRAMBLINGS: u32 = 16;
-/// Starts of a cell where the sweep file does not say.
+/// Starts of a cell if the sweep file gives no number.
 pub const STARTS: u32 = 256;
 /// The fewest starts: four in each scrambling.
 pub const FEWEST_STARTS: u32 = 4 * SCRAMBLINGS;
-/// The most starts: 2¹⁶ in each scrambling, as many as the sequence has.
+/// The most starts: 2¹⁶ in each scrambling, the length of the sequence.
 pub const MOST_STARTS: u32 = SCRAMBLINGS << 16;
 
-/// Which starts there are.
+/// What the starts are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Over {
     /// Velocity and elongation in a box, with control on from t = 0.
@@ -42,10 +43,10 @@ impl Over {
     }
 }
 
-/// The starts of which a share is taken.
+/// The starts over which a share is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Basin {
-    /// Which starts there are.
+    /// What the starts are.
     pub over: Over,
     /// How many are followed: a power of two between [`FEWEST_STARTS`] and [`MOST_STARTS`].
     pub starts: u32,
@@ -67,7 +68,7 @@ impl Default for Basin {
 }
 
 impl Basin {
-    /// Everything on which shares depend, by name, with numbers: for the plan's hash.
+    /// Everything on which shares depend: names, with their numbers, for the plan's hash.
     pub(in crate::sweep) fn facts(&self) -> Vec<(&str, Cow<'_, [f64]>)> {
         let mut facts = vec![("starts over", Cow::Borrowed(&[][..]))];
         facts.push((self.over.name(), vec![f64::from(self.starts)].into()));
@@ -79,7 +80,7 @@ impl Basin {
         facts
     }
 
-    /// In words, for plans and maps.
+    /// A description in words, for plans and maps.
     #[must_use]
     pub fn described(&self) -> String {
         let starts = self.starts;
@@ -107,10 +108,10 @@ impl Basin {
         }
     }
 
-    /// `starts` if there can be so many.
+    /// Checks a number of starts.
     ///
     /// # Errors
-    /// Says how many there can be.
+    /// Says which numbers are allowed.
     pub fn check_starts(starts: u64) -> Result<u32, String> {
         let range = u64::from(FEWEST_STARTS)..=u64::from(MOST_STARTS);
         match starts.is_power_of_two() && range.contains(&starts) {
@@ -121,10 +122,10 @@ impl Basin {
         }
     }
 
-    /// A range of `parameter` in which starts can lie; it may be one value.
+    /// Checks a range of `parameter` for starts; it may be a single value.
     ///
     /// # Errors
-    /// When an end is outside the parameter's range or they are reversed.
+    /// When an end is outside the parameter's range, or the ends are reversed.
     pub fn check_range(parameter: Parameter, range: [f64; 2]) -> Result<[f64; 2], String> {
         let [from, to] = range;
         for end in range {
@@ -139,9 +140,10 @@ impl Basin {
         }
     }
 
-    /// Velocities of the starts of a setting with a friction law. By default from rest to
-    /// v0 + √(v0² + μ_S² N0²/(κM)): so fast a block gets without friction that is released at the
-    /// limit of sticking, faster than any in uncontrolled stick-slip.
+    /// Range of the velocities of the starts, for a setting with a friction law. By default it
+    /// reaches from rest to v0 + √(v0² + μ_S² N0²/(κM)). This is the largest velocity of a block
+    /// that is released at the limit of sticking and slides without friction; uncontrolled
+    /// stick-slip is always slower.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -155,8 +157,8 @@ impl Basin {
         self.x_dot0.map_or_else(fastest, Ok)
     }
 
-    /// Elongations of the starts of a setting with a friction law. By default those at which a
-    /// block at rest stays at rest: ±μ_S N0/κ.
+    /// Range of the elongations of the starts, for a setting with a friction law. By default it is
+    /// ±μ_S N0/κ, the elongations at which a block at rest stays at rest.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -173,7 +175,7 @@ fn stuck(setting: &Setting) -> Result<f64, ModelError> {
     Ok(mu_s * oscillator.normal_load() / oscillator.stiffness())
 }
 
-/// The table `[basin]`, with the places of what has to fit together.
+/// The table `[basin]`, with the places of the keys that must be consistent.
 #[derive(Debug, Default)]
 pub(super) struct BasinKeys {
     basin: Basin,
@@ -222,7 +224,7 @@ impl BasinKeys {
         self.place.as_ref()
     }
 
-    /// What is asked.
+    /// The starts that the table describes.
     pub(super) fn basin(&self) -> Result<Basin, SpecError> {
         match (&self.box_place, self.basin.over) {
             (Some((parameter, place)), Over::Phase) => {
@@ -252,8 +254,8 @@ mod tests {
     use super::*;
     use crate::sweep::input::law_kind::{Formula, LawKind};
 
-    /// The range by default scales with the units, and holds the uncontrolled cycle: for Coulomb
-    /// friction its fastest velocity is v0 + √(v0² + ((μ_S − μ_K) N0)²/(κM)).
+    /// The default range scales with the units and contains the uncontrolled cycle. For Coulomb
+    /// friction its largest velocity is v0 + √(v0² + ((μ_S − μ_K) N0)²/(κM)).
     #[test]
     fn the_box_by_default_holds_the_uncontrolled_cycle() {
         for (mass, stiffness, load, v0) in [(1.0, 1.0, 1.0, 0.1), (2.0, 7.0, 3.0, 40.0)] {

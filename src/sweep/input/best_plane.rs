@@ -1,10 +1,10 @@
-//! The plane of a sweep whose best settings are looked for.
+//! The planes of a sweep in which the best setting is searched for.
 
 use super::axis::Axis;
 use super::parameter::Parameter;
 use crate::linear::best::SearchedGain;
 
-/// Which gain a parameter is; none for those that are no gain.
+/// The gain that a parameter is; none for other parameters.
 #[must_use]
 pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
     match parameter {
@@ -23,8 +23,8 @@ pub const fn parameter_of(gain: SearchedGain) -> Parameter {
     }
 }
 
-/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and
-/// the delay, if both have more points than one.
+/// The axes (gain, delay) of the planes in which the best setting is searched for: the last gain
+/// axis and the delay, if both have more than one point.
 #[must_use]
 pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
     let gain = axes.iter().rposition(|axis| {

@@ -1,4 +1,4 @@
-//! One motion, as a case file describes it: read and checked once.
+//! One motion as described by a case file, read and checked once.
 //!
 //! ```toml
 //! title = "Velocity control"      # optional
@@ -43,9 +43,9 @@ use super::units::Units;
 use crate::model::Control;
 use crate::slip::case::{Case, CaseError};
 
-/// Samples in a step where the file does not say.
+/// Samples per step if the file gives no number.
 const SAMPLES: u32 = 24;
-/// The most samples in a step.
+/// The most samples per step.
 const MOST_SAMPLES: u64 = 64;
 
 /// Keys of sweep files that case files do not have.
@@ -60,7 +60,7 @@ pub enum Sampling {
     Interval(f64),
 }
 
-/// A case as its file describes it: every value in range, every name known.
+/// A case as described by its file: every value in range, every name known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseSpec {
     /// Title for pictures and the trace; may be empty.
@@ -69,10 +69,10 @@ pub struct CaseSpec {
     pub setting: Setting,
     /// The motion.
     pub case: Case,
-    /// Whether the file does not say where it starts: then it slides faster by [`DISTURBED`], since
-    /// exactly at its equilibrium a block stays, stable or not.
+    /// Whether the file gives no start. The block then starts faster than sliding by [`DISTURBED`]:
+    /// exactly in equilibrium it would stay there, stable or not.
     pub start_assumed: bool,
-    /// End of the trace, in time; none: when the outcome is known.
+    /// End of the trace, in time; none for the time when the outcome is known.
     pub until: Option<f64>,
     /// How densely to sample.
     pub sampling: Sampling,
@@ -82,18 +82,18 @@ pub struct CaseSpec {
     pub text: String,
 }
 
-/// What a text is meant as.
+/// The kind of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextKind {
     /// A sweep file.
     Sweep,
     /// A case file.
     Case,
-    /// A setting alone, which both have, and which is a case where it has a friction law.
+    /// A setting alone, which both kinds have. With a friction law it can be read as a case.
     Setting,
 }
 
-/// What a text is meant as, by its keys; none where they are not those of one kind.
+/// The kind of a text, by its keys; none where they do not fit one kind.
 #[must_use]
 pub fn kind_of_text(text: &str) -> Option<TextKind> {
     let document = parse(text).ok()?;
@@ -110,8 +110,8 @@ pub fn kind_of_text(text: &str) -> Option<TextKind> {
     }
 }
 
-/// Whether a text is meant as a case file rather than a sweep file: it has no key of sweeps alone,
-/// and one of cases alone or everything that a case needs.
+/// Whether a text is a case file rather than a sweep file. It has no key that only sweeps have, and
+/// either a key that only cases have or everything that a case needs.
 #[must_use]
 pub fn is_case_file(text: &str) -> bool {
     let Ok(document) = parse(text) else {
@@ -156,12 +156,12 @@ impl std::str::FromStr for CaseSpec {
     }
 }
 
-/// Whether a motion under a friction law has the parameter.
+/// Whether the parameter belongs to a motion under a friction law.
 fn moves(parameter: Parameter) -> bool {
     matches!(parameter.group(), Group::Model | Group::Pull | Group::Start)
 }
 
-/// When control begins to act: a time, or +∞ for `false`.
+/// Reads when control begins to act: a time, or +∞ for `false`.
 fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
     match entry.boolean() {
         Ok(false) => Ok(f64::INFINITY),
@@ -263,7 +263,7 @@ impl Draft {
         Ok(case)
     }
 
-    /// What the model refuses, at the parameter's place where the file gives it.
+    /// An error of the model, at the place of the parameter if the file gives it.
     fn refused(&self, error: &CaseError) -> SpecError {
         let parameter = match error {
             CaseError::Model(error) => Parameter::from_name(error.parameter),

@@ -1,4 +1,4 @@
-//! Enumerations whose facts stand in a table, a row for each value.
+//! Enumerations with a table of facts, one row for each value.
 
 /// Makes an enumeration with a row of facts for each of its values: `Name::ALL` has them in the
 /// order of their rows, and `value.row()` is the row.

@@ -1,4 +1,4 @@
-//! The command line that asks for a setting.
+//! The command line for a setting.
 
 use super::law_kind::LawKind;
 use super::parameter::Parameter;
@@ -7,9 +7,9 @@ use super::setting::Setting;
 use super::system::shipped;
 use crate::critical::switch_on::Phase;
 
-/// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters, those of
-/// default values left out: numbers in the fewest digits that are read as the same ones. None for
-/// a table, whose points are in a file.
+/// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters. Default values
+/// are left out, and numbers have the fewest digits from which they are read unchanged. None for a
+/// table, whose points are in a file.
 #[must_use]
 pub fn command_line(
     command: &str,
@@ -34,7 +34,7 @@ pub fn command_line(
     ))
 }
 
-/// `slipmap vc` with a setting, whose v0 and start mean nothing.
+/// `slipmap vc` for a setting; its v0 and its start are ignored.
 #[must_use]
 pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     let command = match protocol {
@@ -48,8 +48,8 @@ pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     command_line(&command, setting, known)
 }
 
-/// `slipmap point` of a setting of a system that is part of the program; none for others, whose
-/// files only their users know.
+/// `slipmap point` for a setting of a system that is part of the program. None for other systems,
+/// whose files are not known.
 #[must_use]
 pub fn system_command(setting: &Setting) -> Option<String> {
     let model = setting.system()?;

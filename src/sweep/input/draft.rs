@@ -1,8 +1,8 @@
 //! Reads a sweep file.
 //!
-//! - `beyond`: what a sweep with memory, latency or lags cannot have
-//! - `checks`: whether what it says fits together
-//! - `of_system`: whether a sweep of a system fits together
+//! - `beyond`: checks a sweep with memory, latency, lags or a state of friction
+//! - `checks`: checks that the entries of a sweep file are consistent
+//! - `of_system`: checks that a sweep of a system is consistent
 
 mod beyond;
 mod checks;
@@ -30,8 +30,7 @@ use super::units::Units;
 use super::vc_keys::VcKeys;
 use crate::linear::MarginalTolerance;
 
-/// More points than this on all axes but the last are refused: their product would be too many
-/// cells.
+/// The most points on all axes but the last together: more would give too many cells.
 const MOST_POINTS_TOGETHER: u64 = 2 * MOST_POINTS;
 
 impl std::str::FromStr for SweepSpec {
@@ -55,7 +54,7 @@ impl SweepSpec {
         let document = parse(text)?;
         let mut draft = Draft::default();
         let all = entries(document.get_ref(), "");
-        // What names mean depends on it, wherever it stands.
+        // The meaning of other names depends on the system, so it is read first.
         if let Some(system) = all.iter().find(|entry| entry.key == "system") {
             draft.system = Some(SystemDraft::read(system, text)?);
         }
@@ -102,23 +101,24 @@ impl SweepSpec {
     }
 }
 
-/// What was read of a sweep file, and where, until it is known to fit together.
+/// The parts of a sweep file read so far, with their places, before they are known to be
+/// consistent.
 #[derive(Default)]
 struct Draft {
     title: String,
-    /// The field that pictures show, and where it is named.
+    /// The field that pictures show, and its place.
     picture: Option<(Field, Range<usize>)>,
     is_limit: bool,
     limit: LimitDraft,
     fields: Option<Vec<Field>>,
-    /// Where the first field of motions is asked for, if one is.
+    /// The place of the first field of motions, if there is one.
     motion_place: Option<Range<usize>>,
-    /// The first of these that depends on where a motion starts, with its name.
+    /// The name and place of the first of these fields that depends on the start of a motion.
     start_place: Option<(&'static str, Range<usize>)>,
-    /// Where the first field of many starts is asked for, if one is, with its name.
+    /// The name and place of the first field over many starts, if there is one.
     basin_place: Option<(&'static str, Range<usize>)>,
     basin: BasinKeys,
-    /// Where the first field of the critical velocity is asked for, if one is.
+    /// The place of the first field of the critical velocity, if there is one.
     vc_place: Option<Range<usize>>,
     vc: VcKeys,
     simulation: Simulation,
@@ -126,7 +126,7 @@ struct Draft {
     boundaries: Option<bool>,
     degrees: Vec<f64>,
     degrees_place: Option<Range<usize>>,
-    /// Where the best settings are asked for, if they are.
+    /// The place of the request for best settings, if there is one.
     best: Option<Range<usize>>,
     /// The system, where it is not the letter's.
     system: Option<SystemDraft>,
@@ -197,7 +197,7 @@ impl Draft {
         Ok(())
     }
 
-    /// The parameter of an axis.
+    /// Reads the parameter of an axis.
     fn give_axis(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
         if let Some(system) = &mut self.system {
             return system.give(entry);
@@ -265,7 +265,7 @@ impl Draft {
     }
 }
 
-/// The field that pictures show must be one of the sweep's.
+/// Checks that the field for pictures is a field of the sweep.
 fn picture(
     asked: Option<(Field, Range<usize>)>,
     fields: &[Field],

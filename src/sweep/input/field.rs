@@ -1,4 +1,4 @@
-//! What a map can hold for each cell: every field's one name, meaning, unit, type and source.
+//! The fields that a map can hold for each cell: name, meaning, unit, type and source of each.
 //!
 //! Longer than most files: it is a table, with a row for each field.
 
@@ -37,27 +37,27 @@ impl Storage {
     }
 }
 
-/// How the values of a field are spread, which tells what scale shows them.
+/// How the values of a field are distributed, which determines the scale of pictures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spread {
     /// Numbers of unstable roots.
     Counts,
-    /// From 0 to the largest one; kinds and small counts.
+    /// From 0 to the largest value; kinds and small counts.
     FromZero,
-    /// From 0 on, a few far above all others.
+    /// From 0 upwards, with a few values far above all others.
     LongTail,
     /// Velocities and times above 0, over few or many orders of magnitude.
     Magnitudes,
     /// Velocities that fall to 0 faster than any power.
     Decades,
-    /// Times of relaxation: the shortest ones matter, and they are infinite where nothing decays.
+    /// Relaxation times: the shortest matter most; infinite where nothing decays.
     Relaxation,
     /// On both sides of a change of stability at 0; `stable` is the sign of the stable side.
     AboutZero {
         /// 1 or −1.
         stable: f64,
     },
-    /// On both sides of 0, better below it, a few far from all others.
+    /// On both sides of 0, better below it; a few values are far from all others.
     BetterBelow,
     /// On both sides of 0, of order 1.
     RelativeError,
@@ -80,7 +80,7 @@ impl Spread {
         }
     }
 
-    /// The sign of values where sliding is stable, for values on both sides of a change.
+    /// The sign of stable sliding, for values on both sides of a change of stability.
     #[must_use]
     pub const fn stable_sign(self) -> Option<f64> {
         match self {
@@ -90,7 +90,7 @@ impl Spread {
     }
 }
 
-/// The powers of force, length and time in a unit, or what has none.
+/// Powers of force, length and time in a unit, or a quantity without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Measure {
     Powers([i32; 3]),
@@ -104,19 +104,19 @@ const VELOCITY: Measure = Measure::Powers([0, 1, -1]);
 const TIME: Measure = Measure::Powers([0, 0, 1]);
 const RATE: Measure = Measure::Powers([0, 0, -1]);
 
-/// What there is to know of a field.
+/// The facts about a field.
 struct Row {
     /// The name in sweep files and maps.
     name: &'static str,
-    /// The name that it had before, which sweep files may still use, and which old maps hold.
+    /// Its former name, which sweep files may still use and old maps have.
     former: Option<&'static str>,
-    /// What it is, for `long_name` in maps and notes in pictures.
+    /// Its meaning, for `long_name` in maps and notes in pictures.
     long_name: &'static str,
-    /// What it is in a few words, for titles of axes and colour bars.
+    /// Its meaning in a few words, for titles of axes and colour bars.
     short_name: &'static str,
-    /// What a reader of the map should know besides: where there is no value, and why.
+    /// A comment for readers of the map: where there is no value, and why.
     comment: Option<&'static str>,
-    /// What it is and the comment beside fields of the critical velocity, where these differ.
+    /// Meaning and comment beside fields of the critical velocity, where these differ.
     beside_vc: Option<(&'static str, &'static str)>,
     measure: Measure,
     storage: Storage,
@@ -128,7 +128,7 @@ struct Row {
     stable: Option<fn(f64) -> bool>,
 }
 
-/// What most rows have in common.
+/// The facts that most rows share.
 const ROW: Row = Row {
     name: "",
     former: None,
@@ -144,7 +144,7 @@ const ROW: Row = Row {
     stable: None,
 };
 
-/// Re λ of the root of a rank.
+/// Re λ of the root with a given rank.
 macro_rules! real_part {
     ($rank:literal, $name:literal, $ordinal:literal) => {
         Row {
@@ -164,7 +164,7 @@ macro_rules! real_part {
     };
 }
 
-/// |Im λ| of the root of a rank.
+/// |Im λ| of the root with a given rank.
 macro_rules! frequency {
     ($rank:literal, $name:literal, $ordinal:literal) => {
         Row {
@@ -220,8 +220,8 @@ catalogue! {
             stable: Some(|value| value == 0.0),
             ..ROW
         };
-        /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip
-        /// there: a number of [`OUTCOMES`].
+        /// Outcome of the motion or, beside fields of the critical velocity, of stick-slip: a
+        /// number of [`OUTCOMES`].
         Outcome = Row {
             name: "outcome",
             long_name: "what becomes of the motion",
@@ -272,8 +272,8 @@ catalogue! {
             ),
             ..ROW
         };
-        /// Number of windows of v0, up to the largest one at which it is looked for, in which
-        /// stick-slip survives, whatever ends it there: v_c, N ≤ 0 or the range.
+        /// Number of windows of v0 in which stick-slip survives, up to the largest v0 of the
+        /// search, whatever ends them: v_c, N ≤ 0 or the end of the range.
         Windows = Row {
             name: "windows",
             long_name: "number of windows of v0, up to v_max, in which stick-slip survives",
@@ -286,7 +286,7 @@ catalogue! {
             ),
             ..ROW
         };
-        /// Why the cell is not like others: 0, or the number of a [`Reason`].
+        /// Why the cell is special: 0 for no reason, or the number of a [`Reason`].
         Reason = Row {
             name: "reason",
             long_name: "why the linear stability of the cell is not like that of others",
@@ -413,7 +413,8 @@ catalogue! {
             comment: Some("at fixed mu_k"),
             ..slope(Slope::MuPrime)
         };
-        /// How far right of the spectral abscissa a line lies that no root is right of.
+        /// Distance from the spectral abscissa to a line on its right, to the right of which no
+        /// root lies.
         CertificateMargin = Row {
             name: "certificate_margin",
             long_name: "certified distance: no characteristic root lies farther right of the \
@@ -436,7 +437,7 @@ catalogue! {
             ),
             ..ROW
         };
-        /// Stiffness over the critical one of rate-and-state friction.
+        /// Stiffness over the critical stiffness of rate-and-state friction.
         StiffnessRatio = Row {
             name: "stiffness_ratio",
             long_name: "stiffness over the critical one, below which steady sliding without \
@@ -470,7 +471,7 @@ catalogue! {
             spread: Spread::LongTail,
             ..margin(OfMargins::GainUpper)
         };
-        /// The least angle by which the loop may turn.
+        /// The smallest phase shift of the loop at which stability is lost.
         PhaseMargin = Row {
             name: "phase_margin",
             long_name: "least angle of either sign by which the loop of the feedback may turn",
@@ -480,7 +481,7 @@ catalogue! {
             stable: Some(|value| value > 0.0),
             ..margin(OfMargins::Phase)
         };
-        /// The largest further latency of the feedback.
+        /// The largest latency of the feedback, counted from none, at which sliding stays stable.
         LatencyMargin = Row {
             name: "latency_margin",
             long_name: "largest latency of the feedback, counted from none, up to which sliding \
@@ -504,8 +505,8 @@ catalogue! {
             stable: Some(|value| value > 0.0),
             ..margin(OfMargins::StabilityRadius)
         };
-        /// From switch-on until ẋ stays within 1 % of v0; NaN where the motion does not come to
-        /// slide.
+        /// Time from switch-on until ẋ stays within 1 % of v0; NaN for motions that do not end in
+        /// sliding.
         SettleTime = Row {
             name: "settle_time",
             long_name: "time from switch-on until the velocity stays within 1 % of v0",
@@ -516,8 +517,8 @@ catalogue! {
             comment: Some("no value where the motion does not come to slide"),
             ..ROW
         };
-        /// From switch-on until the last stick ends; 0 where there is none after switch-on, NaN
-        /// where sticks go on.
+        /// Time from switch-on until the end of the last stick; 0 where no stick follows switch-on,
+        /// NaN where sticks go on.
         LastRelease = Row {
             name: "last_release",
             long_name: "time from switch-on until the last stick ends",
@@ -531,13 +532,13 @@ catalogue! {
             ),
             ..ROW
         };
-        /// The smallest load since switch-on.
+        /// The smallest normal load since switch-on.
         NMin = Row {
             name: "n_min",
             long_name: "smallest normal load since switch-on",
             short_name: "smallest load",
             measure: FORCE,
-            // Infinite where control never acted.
+            // N_min is infinite where control never acted.
             source: Source::Motion(|motion| match motion.n_min.is_finite() {
                 true => motion.n_min,
                 false => f64::NAN,
@@ -568,7 +569,7 @@ catalogue! {
             ),
             ..ROW
         };
-        /// Its standard error.
+        /// The standard error of that share.
         BasinShareError = Row {
             name: "basin_share_error",
             long_name: "standard error of basin_share and basin_share_upper",
@@ -581,7 +582,7 @@ catalogue! {
             ),
             ..ROW
         };
-        /// The share if all undecided starts came to slide.
+        /// The share if all undecided starts ended in sliding.
         BasinShareUpper = Row {
             name: "basin_share_upper",
             long_name: "share of starts from which control ends in sliding or nothing is decided",
@@ -643,7 +644,7 @@ catalogue! {
             spread: Spread::Magnitudes,
             ..ROW
         };
-        /// Time stuck in a period at the critical velocity.
+        /// Time of sticking in a period at the critical velocity.
         StickTime = Row {
             name: "stick_time",
             long_name: "time stuck in a period at the critical velocity",
@@ -654,7 +655,7 @@ catalogue! {
             comment: Some("no value for the protocol switch-on"),
             ..ROW
         };
-        /// Time in slip in a period there.
+        /// Time of slipping in a period at the critical velocity.
         SlipTime = Row {
             name: "slip_time",
             long_name: "time in slip in a period at the critical velocity",
@@ -691,7 +692,7 @@ catalogue! {
             ),
             ..ROW
         };
-        /// ω0 T, the duration of the slip that just grazes there, ω0 = √(κ/M).
+        /// ω0 T, the duration of the grazing slip in that limit, ω0 = √(κ/M).
         Omega0T = Row {
             name: "omega0_T",
             long_name: "duration of the slip that just grazes, over sqrt(mass/stiffness)",
@@ -700,7 +701,7 @@ catalogue! {
             comment: Some("infinity from gamma = 1 on"),
             ..ROW
         };
-        /// The pulling velocity from which the block lifts off there, over ṽ.
+        /// The pulling velocity from which the block lifts off in that limit, over ṽ.
         LiftoffOverVtilde = Row {
             name: "liftoff_over_vtilde",
             long_name: "pulling velocity over vtilde from which the block lifts off \
@@ -754,8 +755,8 @@ catalogue! {
     }
 }
 
-/// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps:
-/// those of [`Outcome`], then those of [`Transition`] that are no outcome as well.
+/// Names of all outcomes of a motion or of stick-slip, in the order of their numbers in maps: those
+/// of [`Outcome`], then those of [`Transition`] that are no [`Outcome`].
 pub const OUTCOMES: [&str; Outcome::ALL.len() + Transition::ALL.len() - 1] = {
     let mut names = [""; Outcome::ALL.len() + Transition::ALL.len() - 1];
     let mut i = 0;
@@ -774,8 +775,8 @@ pub const OUTCOMES: [&str; Outcome::ALL.len() + Transition::ALL.len() - 1] = {
     names
 };
 
-/// The place in [`OUTCOMES`] of what is told of stick-slip: undecided where none was found, but not
-/// everywhere.
+/// The place in [`OUTCOMES`] of the end of stick-slip; undecided where no stick-slip was found but
+/// it could not be excluded.
 #[must_use]
 pub fn number_of_outcome(critical: &CriticalVelocity) -> u8 {
     match critical.transition {
@@ -809,7 +810,7 @@ impl Field {
         self.row().name
     }
 
-    /// The name that it had first: plans are compared by it, so that those of old maps stay equal.
+    /// The first name of the field. Plans are compared by it, so that those of old maps stay equal.
     #[must_use]
     pub const fn first_name(self) -> &'static str {
         match self.row().former {
@@ -818,33 +819,32 @@ impl Field {
         }
     }
 
-    /// The field of that name, or of one that it had before.
+    /// The field with this name or former name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let named = |f: &Self| f.name() == name || f.first_name() == name;
         Self::ALL.into_iter().find(named)
     }
 
-    /// What it is, for `long_name` in maps and notes in pictures.
+    /// Its meaning, for `long_name` in maps and notes in pictures.
     #[must_use]
     pub const fn long_name(self) -> &'static str {
         self.row().long_name
     }
 
-    /// What it is in a few words, for titles of axes and colour bars.
+    /// Its meaning in a few words, for titles of axes and colour bars.
     #[must_use]
     pub const fn short_name(self) -> &'static str {
         self.row().short_name
     }
 
-    /// What a reader of the map should know besides, if anything.
+    /// A comment for readers of the map, if there is one.
     #[must_use]
     pub const fn comment(self) -> Option<&'static str> {
         self.row().comment
     }
 
-    /// What there is of it to know beside fields of the critical velocity: its long name and
-    /// comment.
+    /// Its long name and comment beside fields of the critical velocity.
     #[must_use]
     pub fn described_at_vc(self) -> (&'static str, Option<&'static str>) {
         match self.row().beside_vc {
@@ -853,8 +853,7 @@ impl Field {
         }
     }
 
-    /// The names of its kinds, in the order of their numbers; none where it is no
-    /// [`Storage::Kind`].
+    /// The names of its kinds, in the order of their numbers; only for [`Storage::Kind`].
     #[must_use]
     pub fn kinds(self) -> Option<Vec<&'static str>> {
         self.row().kinds.map(|names| names())
@@ -882,14 +881,14 @@ impl Field {
         self.row().source
     }
 
-    /// How its values are spread.
+    /// How its values are distributed.
     #[must_use]
     pub const fn spread(self) -> Spread {
         self.row().spread
     }
 
-    /// True for fields of the critical velocity, which need a friction law; [`Field::Outcome`] is
-    /// one beside them only.
+    /// True for fields of the critical velocity, which need a friction law. [`Field::Outcome`] is
+    /// one only beside them.
     #[must_use]
     pub const fn of_vc(self) -> bool {
         matches!(self.source(), Source::Critical(_))
@@ -920,7 +919,7 @@ impl Field {
         )
     }
 
-    /// True for fields of many motions, which need a friction law and no start.
+    /// True for fields over many motions, which need a friction law but no start.
     #[must_use]
     pub const fn of_basin(self) -> bool {
         matches!(self.source(), Source::Basin(_))
@@ -947,7 +946,7 @@ impl Field {
         }
     }
 
-    /// Whether sliding is stable in a cell with this value; none for fields that do not tell.
+    /// Whether sliding is stable in a cell with this value; none for fields that do not say.
     #[must_use]
     pub fn tells_stable(self, value: f64) -> Option<bool> {
         self.row().stable.map(|stable| stable(value))
@@ -976,7 +975,7 @@ pub fn known_fields() -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// Which field may be meant by a name that is none, and all that there are.
+/// A message about an unknown name: which field may be meant, and all fields.
 #[must_use]
 pub fn fields_meant(name: &str) -> String {
     let meant = did_you_mean(name, Field::ALL.map(Field::name));
@@ -992,7 +991,7 @@ mod tests {
     use super::*;
     use crate::linear::track::MOST_ROOTS;
 
-    /// In the order in which a tile has its columns, and so in which a map takes them.
+    /// Fields stand in the order in which a tile, and so a map, stores its columns.
     #[test]
     fn counts_stand_before_kinds_and_kinds_before_numbers() {
         let place = |field: Field| match field.storage() {

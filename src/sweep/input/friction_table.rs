@@ -1,4 +1,4 @@
-//! The points of a friction law from measurements: in a sweep file, or as a text of two columns.
+//! The points of a measured friction law, from a sweep file or a text with two columns.
 
 use std::ops::Range;
 
@@ -28,20 +28,20 @@ impl Numbers {
     }
 }
 
-/// The key of all points as pairs, or of the file that has them.
+/// The key for all points as pairs, or for the file with the points.
 pub(super) const PAIRS: &str = "table";
 
-/// The columns of a table as a text gives them.
+/// The columns of a table in a text.
 #[derive(Debug, Default)]
 pub(super) struct GivenTable {
-    /// Where they are given as pairs, if they are.
+    /// The place of the points if they are given as pairs.
     pairs: Option<Range<usize>>,
     speeds: Option<(Range<usize>, Numbers)>,
     mu_k: Option<(Range<usize>, Numbers)>,
 }
 
 impl GivenTable {
-    /// Reads `entry` if it is a column. Says whether it is one.
+    /// Reads `entry` if it is a column. Returns whether it is one.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         let column = match entry.key {
             PAIRS => return self.read_pairs(entry).map(|()| true),
@@ -87,7 +87,7 @@ impl GivenTable {
         }
     }
 
-    /// The place and name of a column that is given; none without columns.
+    /// The place and name of a given column; none without columns.
     pub(super) fn any(&self) -> Option<(&Range<usize>, &'static str)> {
         let pairs = self.pairs.as_ref().map(|place| (place, PAIRS));
         let speeds = self
@@ -98,12 +98,12 @@ impl GivenTable {
         pairs.or(speeds).or(mu_k)
     }
 
-    /// The place of μ_K at its first point.
+    /// The place of the first value of μ_K.
     pub(super) fn at_rest(&self) -> Option<&Range<usize>> {
         self.mu_k.as_ref()?.1.places.first()
     }
 
-    /// The table; what is missing is told at `law`.
+    /// The table; a missing column is reported at `law`.
     pub(super) fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
         let missing = |column: TableColumn| {
             SpecError::at(law.clone(), format!("{} is not given", column.name())).help(
@@ -121,7 +121,7 @@ impl GivenTable {
     }
 }
 
-/// The table of two columns; `place`: where to tell that they are not of the same length.
+/// The table of two columns. Columns of different length are reported at `place`.
 fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table, SpecError> {
     Table::new(speeds.values.clone(), mu_k.values.clone()).map_err(|error| {
         let span = match error {
@@ -135,9 +135,9 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
     })
 }
 
-/// Reads a table from a text with a line for each point: the speed and μ_K, separated by a comma, a
+/// Reads a table from a text with one line per point: the speed and μ_K, separated by a comma, a
 /// semicolon or blanks. Empty lines, lines that begin with `#`, and one line of titles before the
-/// first point are passed over.
+/// first point are skipped.
 ///
 /// # Errors
 /// Points at the first line or number that is not understood or out of range, see [`Table::new`].
@@ -149,7 +149,7 @@ pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
 /// `mu_s`.
 ///
 /// # Errors
-/// As there, and where the law is ill-posed, see [`FrictionLaw::table`].
+/// As there, and when the law is ill-posed, see [`FrictionLaw::table`].
 pub fn table_of_law(text: &str, mu_s: f64) -> Result<Table, SpecError> {
     let (table, at_rest) = read_columns(text)?;
     let posed = FrictionLaw::table(table.clone(), mu_s);
@@ -197,7 +197,7 @@ fn read_columns(text: &str) -> Result<(Table, Option<Range<usize>>), SpecError> 
 /// The places of the fields of a line that begins at `from`.
 fn fields(line: &str, from: usize) -> Vec<Range<usize>> {
     let separated = |c: char| c == ',' || c == ';';
-    // Some spreadsheets begin a text with a byte order mark.
+    // Some spreadsheets write a byte order mark at the beginning.
     let blank = |c: char| c.is_whitespace() || c == '\u{feff}';
     let place = |field: &str| {
         let at = from + (field.as_ptr() as usize - line.as_ptr() as usize);

@@ -1,5 +1,5 @@
-//! The parameters that a file gives a value: its tables `[fixed]` and `[friction]`, with the place
-//! of every key.
+//! The parameters with values in a file: its tables `[fixed]` and `[friction]`, with the place of
+//! every key.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ pub(super) struct GivenParameters {
 }
 
 impl GivenParameters {
-    /// Notes that the file gives `parameter`, as a value or as an axis.
+    /// Records that the file gives `parameter`, as a value or as an axis.
     pub(super) fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
         if self.place(parameter).is_some() {
             let message = format!("{} is given twice", parameter.name());
@@ -33,8 +33,8 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// Reads the table `[fixed]`. A name that is not known may be meant as one of those that the
-    /// file `takes`.
+    /// Reads the table `[fixed]`. For an unknown name, one of the parameters that the file `takes`
+    /// is suggested.
     pub(super) fn read_fixed(
         &mut self,
         fixed: &Entry,
@@ -59,7 +59,7 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// Reads the table `[start]`: where a motion starts. The same parameters may stand in
+    /// Reads the table `[start]`: the start of a motion. The same parameters may stand in
     /// `[fixed]`.
     pub(super) fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
         for entry in start.table()? {
@@ -73,13 +73,13 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// Whether it is said where a motion starts.
+    /// Whether the start of a motion is given.
     pub(super) fn has_start(&self) -> bool {
         let mut of_start = Parameter::ALL.into_iter().filter(|p| p.of_start());
         of_start.any(|p| self.place(p).is_some())
     }
 
-    /// A motion starts in a state or at a phase, not both.
+    /// Checks that a motion starts in a state or at a phase, not both.
     pub(super) fn check_start(&self) -> Result<(), SpecError> {
         let state = [Parameter::XDot0, Parameter::A0];
         let state = state.into_iter().find(|p| self.place(*p).is_some());
@@ -131,7 +131,7 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// The law that `entry` names, with its points if it is a table.
+    /// Reads the law named by `entry`, with its points if it is a table.
     fn read_law(&self, entry: &Entry) -> Result<LawKind, SpecError> {
         let name = entry.string()?;
         if name == LawKind::TABLE {
@@ -153,7 +153,7 @@ impl GivenParameters {
         Ok(LawKind::Formula(law))
     }
 
-    /// Motions can be followed under the law, as far as that alone tells.
+    /// Checks that motions can be followed under the law, as far as the law alone decides this.
     pub(super) fn check_motions(&self) -> Result<(), SpecError> {
         match &self.law {
             Some((law, place)) if law.has_state() => {
@@ -164,28 +164,28 @@ impl GivenParameters {
         }
     }
 
-    /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.
+    /// The place at which an ill-posed friction law is reported: its value at rest, or its name.
     pub(super) fn ill_posed_place(&self) -> Option<&Range<usize>> {
         self.table.at_rest().or(self.law_place())
     }
 
-    /// Where the friction law is named, if it is.
+    /// The place of the name of the friction law, if there is one.
     pub(super) fn law_place(&self) -> Option<&Range<usize>> {
         self.law.as_ref().map(|(_, place)| place)
     }
 
-    /// The place of the key of a parameter that is given.
+    /// The place of the key of a given parameter.
     pub(super) fn place(&self, parameter: Parameter) -> Option<&Range<usize>> {
         let found = self.places.iter().find(|(p, _)| *p == parameter);
         found.map(|(_, place)| place)
     }
 
-    /// Every parameter that is given, with the place of its key, in the order of the file.
+    /// Every given parameter, with the place of its key, in the order of the file.
     pub(super) fn places(&self) -> impl Iterator<Item = &(Parameter, Range<usize>)> {
         self.places.iter()
     }
 
-    /// The values that are given, and the defaults of all others.
+    /// A setting of the given values, and defaults for all others.
     pub(super) fn setting(&self) -> Setting {
         let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));
         for (parameter, value) in &self.values {
@@ -194,8 +194,8 @@ impl GivenParameters {
         setting
     }
 
-    /// Every parameter that is needed is there, none that would be ignored. Those of `optional`
-    /// can be left out; what is missing is told at the friction law, or at `place`.
+    /// Checks that every needed parameter is given, and none that would be ignored. Parameters in
+    /// `optional` may be left out. A missing one is reported at the friction law, or at `place`.
     pub(super) fn check(
         &self,
         optional: &[Parameter],

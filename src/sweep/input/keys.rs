@@ -1,16 +1,16 @@
-//! The keys of sweep and case files: a row for each, which readers, messages and the reference of
-//! the guide share.
+//! The keys of sweep and case files, one row for each. Readers, messages and the guide's reference
+//! use the same rows.
 
-/// A key of a file, and what there is to know of it.
+/// A key of a file, with the facts about it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// What it takes: a type and, where there are limits, its range.
+    /// The values that it takes: a type and, where there are limits, its range.
     pub takes: &'static str,
-    /// What holds where it is left out; none where it cannot be.
+    /// The value if it is left out; none for a required key.
     pub default: Option<&'static str>,
-    /// What it is.
+    /// Its meaning.
     pub meaning: &'static str,
 }
 
@@ -201,7 +201,7 @@ pub const FRICTION_TABLE: [Key; 4] = [
     ),
 ];
 
-/// The keys of `[simulation]` in a sweep file, which a case file has at its top.
+/// The keys of `[simulation]` in a sweep file; in a case file they stand at the top.
 pub const SIMULATION: [Key; 3] = [
     key(
         "horizon",
@@ -334,7 +334,7 @@ mod tests {
         keys.iter().find(|key| key.name == name).unwrap()
     }
 
-    /// Digits in groups of three, as the rows have them.
+    /// A number with its digits in groups of three, as in the rows.
     fn grouped(number: u64) -> String {
         let digits = number.to_string();
         let mut text = String::new();
@@ -347,7 +347,7 @@ mod tests {
         text
     }
 
-    /// Numbers in the rows are those of the code.
+    /// The numbers in the rows are those of the code.
     #[test]
     fn rows_tell_the_numbers_of_the_program() {
         let simulation = Simulation::default();

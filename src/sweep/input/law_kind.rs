@@ -1,11 +1,11 @@
-//! Which friction law a sweep uses.
+//! The friction law of a sweep.
 
 use super::catalogue::catalogue;
 use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::model::{FrictionLaw, ModelError, RateAndState, Table};
 
-/// What there is to know of a law that parameters alone describe.
+/// The facts about a law that is described by parameters alone.
 struct Row {
     /// The name in flags and sweep files.
     name: &'static str,
@@ -13,15 +13,14 @@ struct Row {
     formula: &'static str,
     /// The parameters that describe it, besides μ_S.
     parameters: &'static [Parameter],
-    /// How many of them have to be given: what one of them is follows from the others, if it is
-    /// not all.
+    /// How many of them must be given. If not all, the missing one follows from the others.
     needed: usize,
     /// The law of a setting.
     law: fn(&Setting) -> Result<FrictionLaw, ModelError>,
 }
 
 catalogue! {
-    /// A friction law that parameters alone describe.
+    /// A friction law that is described by parameters alone.
     pub enum Formula: Row {
         /// [`FrictionLaw::coulomb`].
         Coulomb = Row {
@@ -53,7 +52,7 @@ catalogue! {
                 FrictionLaw::stribeck(mu0, v_s, at.get(Parameter::MuS))
             },
         };
-        /// [`RateAndState`], which is no function of the velocity alone.
+        /// [`RateAndState`], which is not a function of the velocity alone.
         RateAndState = Row {
             name: "rate-and-state",
             formula: "μ = μ0 + A_f ln(v/v*) + B_f ln(v*θ/D_c)",
@@ -90,7 +89,7 @@ impl Formula {
     }
 }
 
-/// μ0 and v_s of velocity weakening, each given or from the other and the slope at rest.
+/// μ0 and v_s of velocity weakening: each as given, or from the other and the slope at rest.
 fn mu0_and_v_s(at: &Setting) -> (f64, f64) {
     let (mu0, v_s) = (at.get(Parameter::Mu0), at.get(Parameter::VS));
     let slope = at.get(Parameter::MuPrimeRest);
@@ -101,7 +100,7 @@ fn mu0_and_v_s(at: &Setting) -> (f64, f64) {
     }
 }
 
-/// A friction law, with what it has besides parameters.
+/// A friction law, with its data besides parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LawKind {
     /// A formula.
@@ -110,9 +109,9 @@ pub enum LawKind {
     Table(Table),
 }
 
-/// What a law with a state is not.
+/// The name of what a law with a state is not, for messages.
 pub(super) const OF_VELOCITY: &str = "a law of the velocity alone";
-/// Why no motion is followed under a law with a state.
+/// Why motions under a law with a state are not followed.
 pub const NO_MOTIONS: &str = "its coefficient has no value at rest, so that sticks are slow slips: \
     motions under it are not followed";
 
@@ -136,7 +135,7 @@ impl LawKind {
         formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
     }
 
-    /// The names of the laws that a parameter describes.
+    /// The names of the laws with this parameter.
     #[must_use]
     pub fn with(parameter: Parameter) -> String {
         let described = |law: &Formula| {
@@ -160,14 +159,14 @@ impl LawKind {
         }
     }
 
-    /// Whether the coefficient depends on a state besides the velocity: then there is no
-    /// [`FrictionLaw`], and no motion is followed.
+    /// Whether the coefficient depends on a state besides the velocity. There is then no
+    /// [`FrictionLaw`], and motions are not followed.
     #[must_use]
     pub const fn has_state(&self) -> bool {
         matches!(self, Self::Formula(Formula::RateAndState))
     }
 
-    /// The law with its state and the parameters of a setting; none where it has no state.
+    /// The law of a setting, with its state; none for a law without a state.
     pub(super) fn with_state(&self, setting: &Setting) -> Option<RateAndState> {
         self.has_state().then(|| RateAndState {
             mu0: setting.get(Parameter::Mu0),
@@ -179,7 +178,7 @@ impl LawKind {
         })
     }
 
-    /// The parameters that describe the law and have to be given, see [`LawKind::needed`].
+    /// The parameters that describe the law; see [`LawKind::needed`] for how many must be given.
     #[must_use]
     pub const fn parameters(&self) -> &'static [Parameter] {
         match self {
@@ -188,8 +187,8 @@ impl LawKind {
         }
     }
 
-    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the
-    /// others, if it is not all.
+    /// How many of [`LawKind::parameters`] must be given. If not all, the missing one follows from
+    /// the others.
     #[must_use]
     pub const fn needed(&self) -> usize {
         match self {

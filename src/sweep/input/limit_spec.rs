@@ -1,4 +1,4 @@
-//! What a sweep of the limit of a short delay may give: γ, μ_K/μ_S and fields of its own.
+//! A sweep of the limit of a short delay: γ, μ_K/μ_S and its own fields.
 
 use std::ops::Range;
 
@@ -9,27 +9,27 @@ use super::search::LIMIT;
 use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 
-/// Keys at the top of a sweep file that have a meaning in the limit.
+/// Keys at the top of a sweep file that are allowed in the limit.
 const KEYS: [&str; 6] = ["title", "picture", "protocol", "fields", "axes", "fixed"];
 
-/// Where the file gives what has a meaning in the limit only, or everywhere else only.
+/// Places of keys and fields that are allowed only in the limit, or only outside it.
 #[derive(Default)]
 pub(super) struct LimitDraft {
-    /// The first key that has no meaning in the limit.
+    /// The first key that is not allowed in the limit.
     foreign_key: Option<(String, Range<usize>)>,
-    /// All fields that are asked for.
+    /// All requested fields.
     fields: Vec<(Field, Range<usize>)>,
 }
 
 impl LimitDraft {
-    /// Notes a key at the top of the file.
+    /// Records a key at the top of the file.
     pub(super) fn note_key(&mut self, entry: &Entry) {
         if self.foreign_key.is_none() && !KEYS.contains(&entry.key) {
             self.foreign_key = Some((entry.key.to_owned(), entry.key_span.clone()));
         }
     }
 
-    /// Notes the list of fields, which has been read.
+    /// Records the list of fields, which is already checked.
     pub(super) fn note_fields(&mut self, list: &Entry) -> Result<(), SpecError> {
         for element in list.array()? {
             if let Some(field) = Field::from_name(element.string()?) {
@@ -39,17 +39,18 @@ impl LimitDraft {
         Ok(())
     }
 
-    /// All fields that are asked for, with their places.
+    /// All requested fields, with their places.
     pub(super) fn fields(&self) -> impl Iterator<Item = &(Field, Range<usize>)> {
         self.fields.iter()
     }
 
-    /// The first field that is asked for and of this kind, and where.
+    /// The first requested field of this kind, with its place.
     pub(super) fn first_field(&self, of: fn(Field) -> bool) -> Option<&(Field, Range<usize>)> {
         self.fields.iter().find(|(field, _)| of(*field))
     }
 
-    /// The parameters of a sweep of the limit that are no axes; what is missing is told at `axes`.
+    /// The parameters of a sweep of the limit that are no axes. A missing one is reported at
+    /// `axes`.
     pub(super) fn check(
         &self,
         given: &GivenParameters,
@@ -81,7 +82,7 @@ impl LimitDraft {
         Ok(setting)
     }
 
-    /// No field of the limit is asked for.
+    /// Checks that no field of the limit is requested.
     pub(super) fn check_absent(&self) -> Result<(), SpecError> {
         match self.fields.iter().find(|(field, _)| field.of_limit()) {
             Some((field, place)) => {

@@ -1,4 +1,4 @@
-//! The linear model of a setting: the letter's own, or one beyond it.
+//! The linear model of a setting: the letter's own, or a more general one.
 //!
 //! ```text
 //! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ)                                           (1)
@@ -7,10 +7,10 @@
 //! B₀ = (1 + Tλ)(λ² + 1) + fλ,   N₀ = 1 + (1 − c)Tλ,   V₀ = f + λ(1 + Tλ),   f = α − β + αTλ  (4)
 //! ```
 //!
-//! The load follows its command with the lag T_a, the pulling velocity with T_v, and the sensor the
-//! elongation with T_s: each divides what passes through it by 1 + Tλ. (1) and (2) are equation (2)
-//! and the first row of section 7 of the derivation for general systems; (3) is the letter's
-//! friction, (4) with a state, the second row there. Times are in units of √(M/κ).
+//! The load follows its command with the lag T_a, the pulling velocity with T_v, and the sensor
+//! follows the elongation with T_s. Each lag divides the signal by 1 + Tλ. (1) and (2) are equation
+//! (2) and the first row of section 7 of the derivation for general systems. (3) is the letter's
+//! friction; (4) is friction with a state, the second row there. Times are in units of √(M/κ).
 
 use num_complex::Complex64;
 
@@ -31,7 +31,7 @@ pub enum LinearModel {
 }
 
 impl LinearModel {
-    /// The system; the letter's own as one in feedback form.
+    /// The system; the letter's own in feedback form.
     #[must_use]
     pub fn system(&self) -> System {
         match self {
@@ -46,14 +46,14 @@ impl LinearModel {
     }
 }
 
-/// What friction makes of the block on its spring: (3), or another law's.
+/// The block on its spring with friction: (3) for the letter's law, (4) for one with a state.
 #[derive(Debug, Clone, Copy)]
 struct Friction {
     /// B₀, and its derivative with respect to b.
     open: [Polynomial; 2],
-    /// N₀: what a change of the load does to the block.
+    /// N₀: the effect of a change of the load on the block.
     load: Polynomial,
-    /// V₀: what a change of the pulling velocity does, and its derivative.
+    /// V₀: the effect of a change of the pulling velocity, and its derivative.
     velocity: [Polynomial; 2],
 }
 
@@ -83,7 +83,7 @@ pub struct PerGroup {
     pub a_n: Complex64,
 }
 
-/// Degrees here are 6 at the most.
+/// Degrees here are at most 6.
 const LOW: &str = "a low degree";
 
 fn polynomial(coefficients: &[f64]) -> Polynomial {
@@ -95,7 +95,7 @@ fn times(one: &Polynomial, other: &Polynomial) -> Polynomial {
 }
 
 impl Friction {
-    /// With a state, second row of section 7.
+    /// Friction with a state: the second row of section 7.
     fn of_state(groups: StateGroups) -> Self {
         let StateGroups {
             direct,
@@ -124,7 +124,7 @@ impl Friction {
         }
     }
 
-    /// The letter's.
+    /// The letter's friction.
     fn of_slope(b: f64) -> Self {
         Self {
             open: [polynomial(&[1.0, b, 1.0]), polynomial(&[0.0, 1.0])],
@@ -135,7 +135,7 @@ impl Friction {
 }
 
 impl FeedbackLoop {
-    /// With lags T_a, T_v and T_s; gains, memory and latency are still 0.
+    /// A loop with lags T_a, T_v and T_s; gains, memory and latency are still 0.
     fn new(friction: Friction, lags: [f64; 3]) -> Self {
         let [of_load, of_velocity, of_sensor] = lags.map(|time| polynomial(&[1.0, time]));
         let lags = times(&times(&of_load, &of_velocity), &of_sensor);
@@ -150,7 +150,7 @@ impl FeedbackLoop {
         }
     }
 
-    /// Of a setting.
+    /// The loop of a setting.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -179,7 +179,7 @@ impl FeedbackLoop {
         System::feedback(self.open[0], gain, self.memory, self.latency)
     }
 
-    /// Derivatives of D at λ, where 1 − E is `difference`.
+    /// Derivatives of D at λ; `difference` is 1 − E.
     #[must_use]
     pub fn per_group(&self, lambda: Complex64, difference: Complex64) -> PerGroup {
         let at = |polynomial: &Polynomial| polynomial.value(lambda);
@@ -229,7 +229,7 @@ mod tests {
         setting
     }
 
-    /// Where there is nothing beyond the letter both forms are the same equation.
+    /// For a setting of the letter, both forms are the same equation.
     #[test]
     fn the_loop_of_the_letter_is_the_letters_equation() {
         let given = [
@@ -264,7 +264,7 @@ mod tests {
         }
     }
 
-    /// D against its formula, and its derivatives against difference quotients.
+    /// Checks D against its formula, and its derivatives against difference quotients.
     #[test]
     fn lags_and_memory_are_where_they_belong() {
         let at = |changed: Parameter, by: f64| {

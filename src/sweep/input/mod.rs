@@ -1,41 +1,40 @@
 //! What the user wrote: parameters, axes, fields, and the files that name them.
 //!
 //! - `axis`: axis values, each from its index alone
-//! - `basin`: of which starts a share is taken that slides: the table `[basin]`, ranges by default
-//! - `best_plane`: the plane of a sweep whose best settings are looked for
+//! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
+//! - `best_plane`: the planes of a sweep in which the best setting is searched for
 //! - `case_file`: the case file: one motion, read and checked once
-//! - `catalogue`: enumerations whose facts stand in a table, a row for each value
-//! - `command`: the command line that asks for a setting
+//! - `catalogue`: enumerations with a table of facts, one row for each value
+//! - `command`: the command line for a setting
 //! - `draft`: reads a sweep file, once
-//! - `field`: a row for every field: name, meaning, unit, type, what computes it, what its missing
-//!   value means
+//! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `friction_table`: the points of a table from a sweep file or from two columns
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
-//! - `keys`: a row for every key of sweep and case files: name, what it takes, default, meaning
+//! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
 //!   constructor
-//! - `limit_spec`: what a sweep of the limit may give, and what has no meaning in it
+//! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
 //! - `linear_model`: the linear model of a setting: the letter's groups, or a general system
-//! - `nearest`: what was meant by a name that is not known
+//! - `nearest`: suggestions for unknown names
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
 //! - `point_file`: a point of parameter space as text
-//! - `quantity`: what an axis is of: a parameter of slipmap, or one of a system's own
+//! - `quantity`: the quantity of an axis: a parameter of slipmap, or one of a system's own
 //! - `regime_at_v0`: regimes of a working velocity, by name
-//! - `search`: how critical velocities are looked for: by which protocol, how many are recomputed
-//! - `setting`: one value for every parameter, and what has to be given for it
+//! - `search`: the search for critical velocities: its protocol, and the share recomputed
+//! - `setting`: one value for every parameter, and which of them must be given
 //! - `setting_text`: a setting as tables of a sweep or case file
 //! - `simulation`: how far and how exactly motions are followed; the motion of a setting
 //! - `source`: what fields are computed from
-//! - `spec`: a sweep as its file describes it
-//! - `spec_values`: the values of its keys
+//! - `spec`: a sweep as described by its file
+//! - `spec_values`: the values of a sweep file's keys
 //! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
 //!   values of them
 //! - `system_draft`: the system of a sweep: its parameters, and what it cannot have
-//! - `table_file`: a sweep or case file with the points of the friction curve that it names
+//! - `table_file`: a sweep or case file with the contents of the files that it names
 //! - `toml_reader`: TOML with the place of every key and value
-//! - `units`: the units in which a sweep is written
-//! - `vc_keys`: its keys for the critical velocity
+//! - `units`: the units of a sweep
+//! - `vc_keys`: a sweep file's keys for the critical velocity
 
 pub mod axis;
 pub mod basin;

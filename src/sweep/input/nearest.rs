@@ -1,10 +1,10 @@
-//! What was meant by a name that is not known.
+//! Suggestions for unknown names.
 
-/// Two names are near where so much of them is alike, 1 where all is.
+/// The similarity from which two names count as near; equal names have similarity 1.
 const NEAR: f64 = 0.6;
 
-/// The name of those `known` that is nearest to `name`, the first of equals, if one is near.
-/// Capitals are not told from small letters, nor `-` from `_`.
+/// The name among `known` that is most similar to `name`, if one is near; the first of equals.
+/// Upper and lower case count as equal, and so do `-` and `_`.
 #[must_use]
 pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");

@@ -13,7 +13,7 @@ pub(super) struct OwnSystem {
 }
 
 impl OwnSystem {
-    /// At its defaults.
+    /// The system with its parameters at their defaults.
     pub(super) fn new(model: Arc<SystemModel>) -> Self {
         let values = model.parameters.iter().map(|own| own.default).collect();
         Self { model, values }
@@ -37,7 +37,7 @@ impl OwnSystem {
         self.values[own.index] = value;
     }
 
-    /// Puts its values, and those of delay, memory and latency, where they are evaluated.
+    /// Copies its values, and those of delay, memory and latency, into `at` for evaluation.
     pub(super) fn put_into(&self, at: &mut Evaluation, [tau, memory, latency]: [f64; 3]) {
         at.own.clone_from(&self.values);
         (at.tau, at.memory, at.latency) = (tau, memory, latency);

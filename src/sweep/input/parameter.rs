@@ -6,18 +6,18 @@
 use super::catalogue::catalogue;
 use crate::model::ModelError;
 
-/// The largest size of any parameter, and one over the smallest of those that must be positive: far
+/// The largest magnitude of any parameter; its inverse is the smallest positive one. It is far
 /// beyond any experiment, and small enough that no dimensionless group overflows.
 pub(super) const LARGEST: f64 = 1e12;
 
-/// Ranges that a parameter's values can be held to.
+/// Allowed ranges of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Range {
     Any,
     NotNegative,
     Positive,
     Part,
-    /// Between −1 and 1, both left out.
+    /// Between −1 and 1, both excluded.
     WithinOne,
     Negative,
 }
@@ -27,13 +27,13 @@ enum Range {
 pub enum Group {
     /// The block, its spring and load, and their control.
     Model,
-    /// Sliding: what a friction law tells, where there is one.
+    /// Sliding: determined by the friction law, where there is one.
     Sliding,
-    /// The pull, which without a friction law has no meaning.
+    /// The pull, which has no meaning without a friction law.
     Pull,
     /// A friction law.
     Law,
-    /// The start of a motion: where none is given it slides at v0.
+    /// The start of a motion; by default the block slides at v0.
     Start,
     /// The limit of a short delay.
     Limit,
@@ -54,33 +54,33 @@ impl Group {
     }
 }
 
-/// The flag that gives a parameter of a single point.
+/// The flag for a parameter of a single point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Flag {
-    /// What stands for the value in the help.
+    /// The placeholder for the value in the help.
     pub value: &'static str,
-    /// What the help says.
+    /// The text of the help.
     pub help: &'static str,
 }
 
-/// What there is to know of a parameter.
+/// The facts about a parameter.
 struct Row {
-    /// The name, one word everywhere; flags write `-` for `_`.
+    /// The name, the same word everywhere; flags write `-` for `_`.
     name: &'static str,
     /// The symbol of the letter.
     symbol: &'static str,
-    /// What it is, for `long_name` in maps and labels in pictures.
+    /// Its meaning, for `long_name` in maps and labels in pictures.
     long_name: &'static str,
     /// Powers of force, length and time in its unit.
     dimension: [i32; 3],
     range: Range,
-    /// The value where none is given; none where one must be, and for those of a start.
+    /// The default value; none for a required parameter, and for those of a start.
     default: Option<f64>,
     group: Group,
     flag: Option<Flag>,
 }
 
-/// What most rows have in common.
+/// The facts that most rows share.
 const ROW: Row = Row {
     name: "",
     symbol: "",
@@ -377,7 +377,7 @@ catalogue! {
             }),
             ..ROW
         };
-        /// c: how much a change of the load takes from the state.
+        /// c: the share of a change of the load that the state takes up at once.
         LoadMemory = Row {
             name: "load_memory",
             symbol: "c",
@@ -447,7 +447,7 @@ catalogue! {
             }),
             ..ROW
         };
-        /// μ_K/μ_S of the same.
+        /// μ_K/μ_S in that limit.
         MuRatio = Row {
             name: "mu_ratio",
             symbol: "μ_K/μ_S",
@@ -482,7 +482,7 @@ impl Parameter {
         Self::ALL.into_iter().find(|p| p.name() == name)
     }
 
-    /// What it is, for `long_name` in maps and labels in pictures.
+    /// Its meaning, for `long_name` in maps and labels in pictures.
     #[must_use]
     pub const fn long_name(self) -> &'static str {
         self.row().long_name
@@ -500,8 +500,7 @@ impl Parameter {
         self.row().dimension
     }
 
-    /// The value where a sweep does not give one; none where it must, and for those of
-    /// [`Group::Start`].
+    /// The default value; none for a required parameter, and for those of [`Group::Start`].
     #[must_use]
     pub const fn default_value(self) -> Option<f64> {
         self.row().default
@@ -513,7 +512,7 @@ impl Parameter {
         self.row().group
     }
 
-    /// The flag of commands that ask for a single point, if there is one.
+    /// Its flag in commands for a single point, if there is one.
     #[must_use]
     pub const fn flag(self) -> Option<Flag> {
         self.row().flag
@@ -544,8 +543,8 @@ impl Parameter {
         matches!(self.group(), Group::Law)
     }
 
-    /// Memory, latency and lags: what the letter's feedback has not. At 0, their default, there is
-    /// none of it, and nothing is said of them.
+    /// Memory, latency and lags, which the letter's feedback lacks. At 0, their default, they are
+    /// absent and not mentioned.
     pub const BEYOND_LETTER: [Self; 5] = [
         Self::Memory,
         Self::Latency,
@@ -557,7 +556,7 @@ impl Parameter {
     /// The lags of load, velocity and sensor.
     pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
 
-    /// The parameters of every system from a file besides its own: the delay, in feedback form also
+    /// The parameters of every system from a file besides its own: the delay and, in feedback form,
     /// memory and latency.
     #[must_use]
     pub const fn of_systems(feedback: bool) -> &'static [Self] {
@@ -588,7 +587,7 @@ impl Parameter {
         matches!(self.group(), Group::Limit)
     }
 
-    /// The range allowed, in words.
+    /// The allowed range, in words.
     #[must_use]
     pub const fn allowed(self) -> &'static str {
         match self.row().range {
@@ -604,7 +603,7 @@ impl Parameter {
     /// `value` if it is in range.
     ///
     /// # Errors
-    /// Names the parameter, the value and the range allowed.
+    /// Names the parameter, the value and the allowed range.
     pub fn check(self, value: f64) -> Result<f64, ModelError> {
         let [from, to] = self.range();
         if (from..=to).contains(&value) {

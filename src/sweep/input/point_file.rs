@@ -14,8 +14,8 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 //!
-//! Of the critical velocity also `protocol`, `phase` and, in `[start]`, `switch_on_phase`, as in
-//! sweep files.
+//! For the critical velocity there may also be `protocol`, `phase` and, in `[start]`,
+//! `switch_on_phase`, as in sweep files.
 
 use super::given::{GivenParameters, read_units};
 use super::parameter::{Group, Parameter};
@@ -26,21 +26,21 @@ use super::units::Units;
 use super::vc_keys::VcKeys;
 use crate::model::Control;
 
-/// What is asked of a point.
+/// What a point is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PointOf {
-    /// Sliding at it: all parameters that its stability depends on.
+    /// Sliding: all parameters on which its stability depends.
     Sliding,
-    /// Its critical velocity: a friction law, no v0, a delay only where control acts.
+    /// Its critical velocity: a friction law, no v0, and a delay only if control acts.
     CriticalVelocity,
-    /// The critical velocity of a setting whose v0, if it has one, is left aside.
+    /// The critical velocity of a setting, whose v0 is ignored if it has one.
     CriticalVelocityOfSetting,
     /// Its friction law alone.
     Law,
 }
 
 impl PointOf {
-    /// Whether a parameter has a meaning in it.
+    /// Whether a point for this purpose has the parameter.
     const fn takes(self, parameter: Parameter) -> bool {
         match (self, parameter.group()) {
             (_, Group::Limit | Group::Start) => false,
@@ -58,7 +58,7 @@ pub struct PointSpec {
     pub setting: Setting,
     /// Their units.
     pub units: Units,
-    /// Which question about the critical velocity is asked.
+    /// The protocol for the critical velocity.
     pub protocol: Protocol,
 }
 
@@ -99,7 +99,7 @@ impl PointSpec {
                 given.check(&[Parameter::V0, Parameter::Tau], None)?;
             }
         }
-        // Without v0 the law itself has to be well posed.
+        // Without v0, only the law itself can be checked.
         let posed = match of {
             PointOf::Sliding => setting.sliding_point().map(drop),
             _ => setting.friction_law().map(drop),
@@ -116,7 +116,7 @@ impl PointSpec {
     }
 }
 
-/// A friction law is given, no v0, and a delay unless both gains are 0.
+/// Checks that there is a friction law, no v0, and a delay unless both gains are 0.
 fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), SpecError> {
     if let (Some(_), Some(place)) = (given.law_place(), given.place(Parameter::V0)) {
         let message = "v0 is what is looked for";
@@ -125,7 +125,7 @@ fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), 
     check_critical_of(given, setting)
 }
 
-/// A friction law is given, and a delay unless both gains are 0.
+/// Checks that there is a friction law, and a delay unless both gains are 0.
 fn check_critical_of(given: &GivenParameters, setting: &mut Setting) -> Result<(), SpecError> {
     if given.law_place().is_none() {
         let message = "the critical velocity depends on the whole friction law";

@@ -1,4 +1,4 @@
-//! What an axis is of: a parameter of slipmap, or one of a system's own.
+//! The quantity of an axis: a parameter of slipmap, or one of a system's own.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::system::parameter::OwnParameter;
 use super::units::Units;
 use crate::model::Shown;
 
-/// What an axis is of.
+/// The quantity of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Quantity {
     /// A parameter that every sweep of its kind has.
@@ -36,7 +36,7 @@ impl PartialEq<Parameter> for Quantity {
 }
 
 impl SystemModel {
-    /// All that can vary in it: its own parameters, and those that every such system has.
+    /// Everything that can vary in the system: its own parameters, and those of every such system.
     #[must_use]
     pub fn quantities(&self) -> Vec<Quantity> {
         let own = self.parameters.iter().cloned().map(Quantity::Own);
@@ -44,7 +44,7 @@ impl SystemModel {
         own.chain(others.map(|p| Quantity::Known(*p))).collect()
     }
 
-    /// The one of that name.
+    /// The quantity with this name.
     #[must_use]
     pub fn quantity(&self, name: &str) -> Option<Quantity> {
         self.quantities().into_iter().find(|of| of.name() == name)
@@ -70,7 +70,7 @@ impl Quantity {
         }
     }
 
-    /// The symbol of the letter; the name of a system's own.
+    /// The letter's symbol; for a system's own parameter, its name.
     #[must_use]
     pub fn symbol(&self) -> &str {
         match self {
@@ -79,7 +79,7 @@ impl Quantity {
         }
     }
 
-    /// What it is, for `long_name` in maps and labels in pictures.
+    /// Its meaning, for `long_name` in maps and labels in pictures.
     #[must_use]
     pub fn long_name(&self) -> &str {
         match self {
@@ -97,7 +97,7 @@ impl Quantity {
         }
     }
 
-    /// The value where none is given; none where one must be.
+    /// The default value; none for a required parameter.
     #[must_use]
     pub fn default_value(&self) -> Option<f64> {
         match self {
@@ -115,7 +115,7 @@ impl Quantity {
         }
     }
 
-    /// The range allowed, in words.
+    /// The allowed range, in words.
     #[must_use]
     pub fn allowed(&self) -> String {
         match self {
@@ -127,7 +127,7 @@ impl Quantity {
     /// `value` if it is in range.
     ///
     /// # Errors
-    /// Names the parameter, the value and the range allowed.
+    /// Names the parameter, the value and the allowed range.
     pub fn check(&self, value: f64) -> Result<f64, String> {
         let [from, to] = self.range();
         if (from..=to).contains(&value) {

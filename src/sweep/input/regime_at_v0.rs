@@ -1,17 +1,17 @@
 //! Regimes of working velocities.
 
-/// What a working velocity v0 is good for.
+/// The regime of a working velocity v0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RegimeAtV0 {
     /// Sliding is linearly stable, and there is no stick-slip beside it.
     Stable,
-    /// Sliding is linearly stable, and stick-slip persists beside it.
+    /// Sliding is linearly stable, and stick-slip coexists with it.
     Bistable,
     /// Sliding is linearly unstable.
     Unstable,
-    /// Sliding is linearly stable, and the way there leads through N ≤ 0.
+    /// Sliding is linearly stable, but the way to it leads through N ≤ 0.
     LiftOff,
-    /// Sliding is marginal, or what becomes of stick-slip is not known.
+    /// Sliding is marginal, or the fate of stick-slip is unknown.
     Undecided,
 }
 

@@ -1,4 +1,4 @@
-//! How critical velocities are looked for.
+//! The search for critical velocities.
 
 use super::parameter::Parameter;
 use super::setting::Setting;
@@ -8,11 +8,11 @@ use crate::critical::{GRAZE_PRECISION, RampOptions};
 /// Phases over one cycle for the worst case.
 pub const PHASES: u32 = 32;
 
-/// The protocol of a sweep that stands for itself: Coulomb friction and load control as τ → 0, the
+/// A protocol of its own, for whole sweeps: Coulomb friction and load control as τ → 0, in the
 /// closed form of [`crate::critical::limit`].
 pub const LIMIT: &str = "limit";
 
-/// Which question is asked of motions.
+/// How motions are started and what is asked of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Protocol {
     /// From controlled stick-slip at low v0, raised until stick-slip ends.
@@ -35,7 +35,7 @@ impl Protocol {
         }
     }
 
-    /// The protocol for a setting, which may have a phase of its own.
+    /// The protocol for a setting, whose own phase takes precedence if it has one.
     #[must_use]
     pub fn at(self, setting: &Setting) -> Self {
         match (self, setting.get(Parameter::SwitchOnPhase)) {
@@ -46,7 +46,7 @@ impl Protocol {
         }
     }
 
-    /// The largest v0 at which stick-slip is looked for, in units of μ_S N0/√(κM).
+    /// The largest v0 of the search, in units of μ_S N0/√(κM).
     #[must_use]
     pub fn v_max(self) -> f64 {
         match self {
@@ -55,7 +55,7 @@ impl Protocol {
         }
     }
 
-    /// To what v_c is known, relative.
+    /// The relative precision of v_c.
     #[must_use]
     pub fn precision(self) -> f64 {
         match self {
@@ -65,10 +65,10 @@ impl Protocol {
     }
 }
 
-/// How the critical velocities of a sweep are looked for.
+/// The search for the critical velocities of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// Which question is asked; a setting's own phase of switch-on comes before the one here.
+    /// The protocol; a setting's own phase of switch-on takes precedence over the one here.
     pub protocol: Protocol,
     /// The share of cells that are recomputed by simulation, 0 to 1.
     pub verify: f64,

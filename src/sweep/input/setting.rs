@@ -1,4 +1,4 @@
-//! One value for every parameter, and what has to be given for it.
+//! One value for every parameter, and which of them must be given.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -17,17 +17,17 @@ use crate::model::{
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GivenError {
-    /// This one is needed and not given.
+    /// This parameter is needed but not given.
     Missing(Parameter),
-    /// This one is given and would have no effect.
+    /// This parameter is given but would have no effect.
     Unused(Parameter),
-    /// This one is given and follows from others that are given too.
+    /// This parameter is given, but follows from others that are also given.
     Follows(Parameter),
 }
 
 impl GivenError {
-    /// What is wrong, in words, for a setting with the friction law `law`; `name` is how parameters
-    /// are called where they are given.
+    /// The error in words, for a setting with the friction law `law`. `name` gives the name of a
+    /// parameter in the file or on the command line.
     #[must_use]
     pub fn message(self, law: Option<&LawKind>, name: fn(Parameter) -> String) -> String {
         match (self, law) {
@@ -57,7 +57,7 @@ impl GivenError {
         }
     }
 
-    /// What could be done about it; `name` as in [`GivenError::message`].
+    /// A suggestion for the error; `name` as in [`GivenError::message`].
     #[must_use]
     pub fn help(self, name: fn(Parameter) -> String) -> String {
         use Parameter::{Mu0, MuK, MuPrime, MuPrimeRest, V0, VS};
@@ -100,8 +100,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The default values; those without a default are NaN until they are set. `law`: where μ_K and
-    /// μ_K′ come from.
+    /// A setting of default values; parameters without a default are NaN until they are set. μ_K
+    /// and μ_K′ come from `law`, if there is one.
     #[must_use]
     pub fn new(law: Option<LawKind>) -> Self {
         let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
@@ -132,7 +132,8 @@ impl Setting {
         self.system.iter().flat_map(OwnSystem::parameters)
     }
 
-    /// Values at which the system from a file is evaluated; none where it is the letter's.
+    /// The system from a file and the values at which it is evaluated; none for the letter's
+    /// system.
     #[must_use]
     pub fn evaluation(&self) -> Option<(&SystemModel, Evaluation)> {
         let system = self.system.as_ref()?;
@@ -141,7 +142,7 @@ impl Setting {
         Some((&system.model, at))
     }
 
-    /// The system from a file at this setting, evaluated in `at`; none where it is the letter's.
+    /// The system from a file at this setting, evaluated in `at`; none for the letter's system.
     ///
     /// # Errors
     /// Where an expression has no finite value.
@@ -151,12 +152,12 @@ impl Setting {
         Some(system.model.at(at))
     }
 
-    /// What every system has besides its own: delay, memory and latency.
+    /// The parameters of every system besides its own: delay, memory and latency.
     fn every_systems(&self) -> [f64; 3] {
         [Parameter::Tau, Parameter::Memory, Parameter::Latency].map(|p| self.get(p))
     }
 
-    /// The value of what an axis is of.
+    /// The value of the quantity of an axis.
     #[must_use]
     pub fn value_of(&self, quantity: &Quantity) -> f64 {
         match (quantity, &self.system) {
@@ -166,7 +167,7 @@ impl Setting {
         }
     }
 
-    /// Sets the value of what an axis is of.
+    /// Sets the value of the quantity of an axis.
     #[inline]
     pub fn vary(&mut self, quantity: &Quantity, value: f64) {
         match (quantity, &mut self.system) {
@@ -196,8 +197,8 @@ impl Setting {
     }
 
     /// True for the parameters on which a cell of this setting depends: those that it takes and has
-    /// a value of. Not asked of the limit of a short delay, see
-    /// [`SweepSpec::uses`](super::spec::SweepSpec::uses).
+    /// a value of. For the limit of a short delay, see
+    /// [`SweepSpec::uses`](super::spec::SweepSpec::uses) instead.
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         let taken = match &self.system {
@@ -208,9 +209,8 @@ impl Setting {
         taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
     }
 
-    /// The first of these parameters by which the setting is beyond the letter's own system. What
-    /// nothing feeds back is not remembered either, and comes to nothing late: without gains memory
-    /// and latency are left aside.
+    /// The first of these parameters with which the setting goes beyond the letter's own system.
+    /// Without gains, memory and latency have no effect and do not count.
     #[must_use]
     pub fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
         let idle = self.control() == Control::default();
@@ -225,8 +225,8 @@ impl Setting {
         self.law.as_ref().is_some_and(LawKind::has_state)
     }
 
-    /// Refuses what is beyond the letter's own system by one of these parameters, for computations
-    /// that know nothing of them; `allowed` says what is allowed there, and where.
+    /// Refuses settings that go beyond the letter's own system by one of these parameters, for
+    /// computations that do not support them. `allowed` says what is allowed there, and where.
     ///
     /// # Errors
     /// Names the first of them that is not 0.
@@ -255,7 +255,8 @@ impl Setting {
         }
     }
 
-    /// True for the parameters that a setting with this law can have, its start left aside.
+    /// True for the parameters that a setting with this law can have, apart from those of its
+    /// start.
     fn takes(law: Option<&LawKind>, parameter: Parameter) -> bool {
         match (law, parameter.group()) {
             (_, Group::Limit) => false,
@@ -268,8 +269,8 @@ impl Setting {
         }
     }
 
-    /// Every parameter that a setting with this law needs is given, and none that would be ignored.
-    /// The start of a motion is another matter: linear stability knows none.
+    /// Checks that every parameter that a setting with this law needs is given, and none that would
+    /// be ignored. The start of a motion is not checked: linear stability does not depend on it.
     ///
     /// # Errors
     /// Names the first parameter that is missing or unused.
@@ -305,7 +306,7 @@ impl Setting {
         }
     }
 
-    /// The friction law with its parameters; none where there is none of the velocity alone.
+    /// The friction law with its parameters; none where there is no law of the velocity alone.
     ///
     /// # Errors
     /// When the law is ill-posed, see [`FrictionLaw`].
@@ -314,14 +315,14 @@ impl Setting {
         law.map(|law| law.at(self)).transpose()
     }
 
-    /// The law of rate-and-state friction, where it is that.
+    /// The law of rate-and-state friction; none for other laws.
     #[must_use]
     pub fn rate_and_state(&self) -> Option<RateAndState> {
         self.law.as_ref()?.with_state(self)
     }
 
-    /// κ/κ_c of rate-and-state friction, infinite where sliding without control is stable at every
-    /// stiffness; none where it is not that law.
+    /// κ/κ_c of rate-and-state friction; infinite where sliding without control is stable at every
+    /// stiffness, none for other laws.
     #[must_use]
     pub fn stiffness_ratio(&self) -> Option<f64> {
         let (law, oscillator) = (self.rate_and_state()?, self.oscillator().ok()?);
@@ -361,8 +362,8 @@ impl Setting {
     /// The dimensionless groups and the unit of time √(M/κ).
     ///
     /// # Errors
-    /// When a parameter is outside the model's range, and for all that has more than these groups:
-    /// memory, latency, lags or a state of friction.
+    /// When a parameter is outside the model's range, and for settings that these groups do not
+    /// describe: with memory, latency, lags or a state of friction.
     pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
         self.check_of_letter(
             &Parameter::BEYOND_LETTER,
@@ -373,7 +374,7 @@ impl Setting {
         Ok((groups, oscillator.time_unit()))
     }
 
-    /// Whether there is a delay that nothing acts on: both gains are 0.
+    /// Whether a delay is given but has no effect, because both gains are 0.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
         let idle = self.system.is_none() && self.control() == Control::default();

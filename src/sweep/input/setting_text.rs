@@ -1,5 +1,5 @@
-//! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`, which give the same setting
-//! when they are read.
+//! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`. Reading them gives the same
+//! setting.
 
 use super::law_kind::LawKind;
 use super::parameter::{Group, Parameter};
@@ -7,7 +7,7 @@ use super::setting::Setting;
 use super::units::Units;
 use crate::model::table::TableColumn;
 
-/// A number that is read as the same.
+/// A number as text that is read as the same number.
 #[must_use]
 pub fn number(value: f64) -> String {
     format!("{value:?}")
@@ -30,7 +30,7 @@ pub fn of_point(setting: &Setting, parameter: Parameter) -> bool {
     !parameter.of_start() && setting.uses(parameter)
 }
 
-/// The tables of a setting, with its `wanted` parameters; its start is left aside.
+/// The tables of a setting, with its `wanted` parameters but without its start.
 #[must_use]
 pub fn setting_text(
     setting: &Setting,

@@ -1,5 +1,5 @@
-//! How far and how exactly motions are followed, and the motion of a setting: what sweep and case
-//! files share.
+//! How far and how exactly motions are followed, and the motion of a setting: common to sweep and
+//! case files.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -11,40 +11,39 @@ use crate::model::{Control, ModelError};
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
 
-/// Horizon where the file gives none, from switch-on, in units of √(M/κ).
+/// Default horizon, from switch-on, in units of √(M/κ).
 const HORIZON: f64 = 1000.0;
-/// The most steps of a motion where the file does not say: about a second.
+/// Default limit of the steps of a motion: about a second.
 const STEPS: u64 = 1_000_000;
 /// The most steps that a file may ask for.
 const MOST_STEPS: u64 = 1_000_000_000;
 /// Times and lengths that are greater than zero.
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
-/// What motions do not know.
+/// The parameters that motions do not support.
 pub const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::LoadLag,
     Parameter::VelocityLag,
     Parameter::SensorLag,
 ];
 
-/// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of
-/// a sweep file.
+/// The keys `horizon`, `tolerance` and `steps`, of a case file or of the table `[simulation]` of a
+/// sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// Until when the outcome is looked for, in time; none: 1000 √(M/κ) after switch-on.
+    /// The time until which the motion is followed; none for 1000 √(M/κ) after switch-on.
     pub horizon: Option<f64>,
-    /// Error allowed in a step, relative.
+    /// Relative error allowed in a step.
     pub tolerance: f64,
     /// The most steps.
     pub steps: u64,
-    /// By which share of v0 a block is faster than it is pulled at t = 0, where nothing says how it
-    /// starts.
+    /// The share of v0 by which a block is faster than it is pulled at t = 0, if no start is given.
     pub disturbance: f64,
     horizon_place: Option<Range<usize>>,
 }
 
-/// The disturbance of a motion whose start is not given: exactly at its equilibrium a block stays,
-/// stable or not.
+/// The disturbance of a motion without a given start: exactly in equilibrium a block would stay
+/// there, stable or not.
 pub const DISTURBED: f64 = 0.01;
 
 impl Default for Simulation {
@@ -59,8 +58,8 @@ impl Default for Simulation {
     }
 }
 
-/// What is said of a start that is not given, where sliding is disturbed by so much of v0; none
-/// where it is not.
+/// A remark on a start that is not given, where sliding is disturbed by this share of v0; none
+/// without a disturbance.
 #[must_use]
 pub fn assumed_start(disturbance: f64) -> Option<String> {
     (disturbance != 0.0).then(|| {
@@ -73,7 +72,7 @@ pub fn assumed_start(disturbance: f64) -> Option<String> {
 }
 
 impl Simulation {
-    /// Takes the value of an entry that is one of the keys; false where it is none.
+    /// Reads an entry if it is one of the keys; returns whether it is.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
             "horizon" => {
@@ -105,13 +104,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// What is said of a start that is not given; none where no motion has such a one.
+    /// A remark on a start that is not given; none where motions are not disturbed.
     #[must_use]
     pub fn assumed_start(&self) -> Option<String> {
         assumed_start(self.disturbance)
     }
 
-    /// The horizon, where it is given, is later than `switch_on`, the value of `name`.
+    /// Checks that the horizon, if given, is later than `switch_on`, the value of `name`.
     pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
         match (&self.horizon, &self.horizon_place) {
             (Some(horizon), Some(place)) if *horizon <= switch_on => {
@@ -123,9 +122,9 @@ impl Simulation {
         }
     }
 
-    /// The motion of `setting`, with control acting from `switch_on` on unless the setting has a
-    /// phase for that. Where it has no start the block slides at v0, faster by the disturbance.
-    /// None where it has no friction law.
+    /// The motion of `setting`. Control acts from `switch_on` on, unless the setting has a phase of
+    /// switch-on. Without a given start, the block slides at v0, faster by the disturbance. None
+    /// without a friction law.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -147,7 +146,7 @@ impl Simulation {
                 }),
             },
         };
-        // Without gains nothing is ever switched on.
+        // Without gains there is nothing to switch on.
         let switch_on = match setting.control() == Control::default() {
             true => f64::INFINITY,
             false => phase.unwrap_or(switch_on),

@@ -6,8 +6,8 @@ use crate::critical::CriticalWindows;
 use crate::critical::limit::LimitCell;
 use crate::slip::outcome::Summary;
 
-/// What computes a field. Where that takes long, the row of the field has the function that picks
-/// its value; counts and roots are picked in `cells`, without a call for each cell.
+/// The computation behind a field. For expensive ones the row of the field has the function that
+/// picks its value. Counts and roots are picked in `cells`, without a call for each cell.
 #[derive(Debug, Clone, Copy)]
 pub enum Source {
     /// The closed form of a whole line of delays.
@@ -16,13 +16,13 @@ pub enum Source {
     Roots(OfRoots),
     /// The linear model of a cell, besides its counts and roots.
     Linear(OfLinear),
-    /// How far a cell is from the boundary of stability.
+    /// The distance of a cell from the boundary of stability.
     Margins(OfMargins),
     /// The motion of the block, which needs a friction law and depends on its start.
     Motion(fn(&Summary) -> f64),
     /// The critical velocity, which needs a friction law.
     Critical(fn(&VcCell) -> f64),
-    /// The motion or, beside fields of the critical velocity, that.
+    /// The motion or, beside fields of the critical velocity, the critical velocity.
     MotionOrCritical(fn(&Summary) -> f64, fn(&VcCell) -> f64),
     /// The motions from many starts, which need a friction law.
     Basin(fn(&BasinCell) -> f64),
@@ -30,8 +30,8 @@ pub enum Source {
     Limit(fn(&LimitCell) -> f64),
 }
 
-/// A number that comes from the roots of a cell. Roots are ranked from the right, conjugate pairs
-/// counted once; 0 is the rightmost one.
+/// A number from the roots of a cell. Roots are ranked from the right, with rank 0 for the
+/// rightmost one; conjugate pairs count once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfRoots {
     /// Re λ of the root of this rank.
@@ -42,19 +42,20 @@ pub enum OfRoots {
     RelaxationTime,
     /// The derivative of the spectral abscissa with respect to a parameter.
     Derivative(Slope),
-    /// How far right of the spectral abscissa no root is certified to lie.
+    /// Distance from the spectral abscissa to a line on its right that certifiably has no root to
+    /// its right.
     CertificateMargin,
 }
 
-/// What the linear model of a cell tells besides counts and roots.
+/// A quantity of the linear model of a cell, besides counts and roots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfLinear {
-    /// Why the cell is not like others: 0, or the number of a
+    /// Why the cell is special: 0 for no reason, or the number of a
     /// [`Reason`](crate::linear::general::Reason).
     Reason,
     /// The real part at which roots accumulate.
     EssentialAbscissa,
-    /// Stiffness over the critical one of rate-and-state friction.
+    /// Stiffness over the critical stiffness of rate-and-state friction.
     StiffnessRatio,
 }
 
@@ -63,18 +64,18 @@ pub enum OfLinear {
 pub enum OfMargins {
     /// The factor of both gains below 1 at which stability is lost.
     GainLower,
-    /// The one above 1.
+    /// The factor of both gains above 1 at which stability is lost.
     GainUpper,
-    /// The least angle of the loop.
+    /// The smallest phase shift of the loop at which stability is lost.
     Phase,
-    /// The largest further latency of the feedback.
+    /// The largest latency of the feedback, counted from none, at which sliding stays stable.
     Latency,
     /// The largest relative box of parameters.
     StabilityRadius,
 }
 
 impl OfRoots {
-    /// Number of roots from the right that it needs.
+    /// Number of roots from the right that this needs.
     pub(super) const fn needed(self) -> usize {
         match self {
             Self::RealPart(rank) | Self::Frequency(rank) => rank + 1,
@@ -109,26 +110,26 @@ impl Slope {
     }
 }
 
-/// What is known of stick-slip in a cell, in units of the sweep.
+/// The results for stick-slip in a cell, in units of the sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct VcCell<'a> {
     /// Where stick-slip survives, and how it ends.
     pub found: &'a CriticalWindows,
-    /// What v0 is good for; none where no field asks.
+    /// The regime of v0; none where no field needs it.
     pub regime: Option<RegimeAtV0>,
     /// The velocity above which sliding is linearly stable and free of stick-slip; NaN where no
-    /// field asks.
+    /// field needs it.
     pub v_smooth: f64,
 }
 
-/// What is known in a cell of the starts from which control ends in sliding; NaN where there is no
+/// The share of starts in a cell from which control ends in sliding; NaN where there is no
 /// uncontrolled cycle to start in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BasinCell {
-    /// Their share of all.
+    /// The share of all starts.
     pub share: f64,
     /// Its standard error, or that of `upper`, whichever is larger.
     pub error: f64,
-    /// The share if all that are undecided came to slide.
+    /// The share if all undecided starts ended in sliding.
     pub upper: f64,
 }

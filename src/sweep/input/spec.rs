@@ -1,4 +1,4 @@
-//! What the user wrote: a sweep file, read and checked once.
+//! A sweep file, read and checked once.
 //!
 //! ```toml
 //! title = "Velocity control"              # optional
@@ -73,35 +73,35 @@ use super::simulation::Simulation;
 use super::units::Units;
 use crate::linear::MarginalTolerance;
 
-/// A sweep as its file describes it: every value in range, every name known.
+/// A sweep as described by its file: every value in range, every name known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepSpec {
     /// Title for pictures and the map; may be empty.
     pub title: String,
-    /// The field that pictures show unless another is asked for; no part of the plan.
+    /// The field that pictures show by default; not part of the plan.
     pub picture: Option<Field>,
-    /// Whether it is one of the limit of a short delay, [`crate::critical::limit`].
+    /// Whether it is a sweep of the limit of a short delay, [`crate::critical::limit`].
     pub limit: bool,
     /// Axes in the order of the file: the dimensions of the map.
     pub axes: Vec<Axis>,
     /// All other parameters.
     pub fixed: Setting,
-    /// What to compute.
+    /// The fields to compute.
     pub fields: Vec<Field>,
-    /// Whether to trace crossing curves; none: where that is cheap.
+    /// Whether to trace crossing curves; none: only where that is cheap.
     pub boundaries: Option<bool>,
     /// Degrees of stability σ > 0, in 1/time and increasing, whose curves max Re λ = −σ are traced
     /// beside the boundaries.
     pub degrees_of_stability: Vec<f64>,
     /// Whether to look for the best setting of every plane (gain, delay).
     pub best: bool,
-    /// How near to a crossing a cell is marginal.
+    /// How close to a crossing a cell counts as marginal.
     pub tolerance: MarginalTolerance,
     /// How far and how exactly motions are followed.
     pub simulation: Simulation,
-    /// Of which starts the share is taken that ends in sliding; none where no field asks for it.
+    /// The starts over which the share that ends in sliding is taken; none where no field needs it.
     pub basin: Option<Basin>,
-    /// How critical velocities are looked for; none where no field asks for them.
+    /// The search for critical velocities; none where no field needs them.
     pub critical: Option<Search>,
     /// Units of the parameters.
     pub units: Units,
@@ -119,7 +119,7 @@ impl SweepSpec {
         }
     }
 
-    /// What cells depend on and is no axis, with its value.
+    /// The quantities on which cells depend and that are no axes, with their values.
     #[must_use]
     pub fn scalars(&self) -> Vec<(Quantity, f64)> {
         let known = Parameter::ALL.into_iter().filter(|p| self.uses(*p));
@@ -135,8 +135,8 @@ impl SweepSpec {
             .collect()
     }
 
-    /// Whether some cell has memory, latency, lags or a state of friction: more than the letter's
-    /// own system.
+    /// Whether some cell has memory, latency, lags or a state of friction, which the letter's own
+    /// system lacks.
     #[must_use]
     pub fn beyond_letter(&self) -> bool {
         let of = &Parameter::BEYOND_LETTER;
@@ -144,8 +144,8 @@ impl SweepSpec {
         other || beyond_letter(&self.fixed, &self.axes, of).is_some()
     }
 
-    /// Whether there is a sliding state in each cell whose linear stability can be asked for: a
-    /// friction law needs a v0.
+    /// Whether each cell has a sliding state whose linear stability can be computed. A friction law
+    /// needs a v0 for that.
     #[must_use]
     pub fn has_sliding(&self) -> bool {
         let on_axis = self.axes.iter().any(|a| a.parameter == Parameter::V0);
@@ -154,8 +154,8 @@ impl SweepSpec {
         !self.limit && given
     }
 
-    /// Whether cells differ in a delay, or have one, that nothing acts on: both gains are 0 in all
-    /// of them.
+    /// Whether the sweep has a delay, fixed or as an axis, that has no effect because both gains
+    /// are 0 in all cells.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
         let on_axis = |p| self.axes.iter().any(|axis| axis.parameter == p);
@@ -167,7 +167,7 @@ impl SweepSpec {
         !self.limit && !gain && setting.has_idle_delay()
     }
 
-    /// What is said of the starts of motions: of many, or of one that is not given.
+    /// A remark on the starts of motions: on many starts, or on one that is not given.
     #[must_use]
     pub fn said_of_starts(&self) -> Option<String> {
         let many = self.basin.as_ref().map(Basin::described);
@@ -181,11 +181,11 @@ impl SweepSpec {
     }
 }
 
-/// The first of the parameters `of` by which some cell is beyond the letter's own feedback.
+/// The first of the parameters `of` with which some cell goes beyond the letter's own feedback.
 pub(super) fn beyond_letter(fixed: &Setting, axes: &[Axis], of: &[Parameter]) -> Option<Parameter> {
     let mut most = fixed.clone();
     for axis in axes {
-        // Any value that is not 0 will do.
+        // One nonzero value is enough.
         let value = axis.values.iter().copied().find(|value| *value != 0.0);
         most.vary(&axis.parameter, value.unwrap_or(0.0));
     }

@@ -8,7 +8,7 @@ use super::toml_reader::{Entry, SpecError};
 use crate::linear::MarginalTolerance;
 use crate::model::Shown;
 
-/// More degrees of stability than this are refused.
+/// The most degrees of stability.
 const MOST_DEGREES: usize = 16;
 /// The largest degree of stability, in 1/time.
 const LARGEST_DEGREE: f64 = 1e12;
@@ -109,12 +109,12 @@ pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
     }
-    // An abscissa without the distance that its certificate leaves open would say less than it
-    // seems to.
+    // An abscissa alone would claim more than is certified: the margin of the certificate comes
+    // with it.
     if fields.contains(&Field::Abscissa) && !fields.contains(&Field::CertificateMargin) {
         fields.push(Field::CertificateMargin);
     }
-    // Likewise a share without its error, and without what is not known of it.
+    // Likewise a share comes with its error and its upper bound.
     if fields.contains(&Field::BasinShare) {
         fields.extend([Field::BasinShareError, Field::BasinShareUpper]);
     }

@@ -1,4 +1,4 @@
-//! The system of a sweep: what its parameters are, and what it cannot have.
+//! The system of a sweep: its parameters, and what it cannot have.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -26,14 +26,14 @@ const OF_THE_BLOCK: [&str; 8] = [
 /// The system of a sweep, and the values that the file gives its parameters.
 pub(super) struct SystemDraft {
     pub model: Arc<SystemModel>,
-    /// What is no axis.
+    /// The values of parameters that are no axes.
     pub setting: Setting,
-    /// Which parameters are given, and where.
+    /// The given parameters, with their places.
     pub given: Vec<(Quantity, Range<usize>)>,
 }
 
 impl SystemDraft {
-    /// Reads the key `system` of the text `whole`: a table, or the name of a shipped one.
+    /// Reads the key `system` of the text `whole`: a table, or the name of a shipped system.
     pub(super) fn read(entry: &Entry, whole: &str) -> Result<Self, SpecError> {
         let model = if entry.is_table() {
             SystemModel::of_table(entry, whole)?
@@ -53,7 +53,7 @@ impl SystemDraft {
         })
     }
 
-    /// The parameter that a key names, which is noted as given.
+    /// The parameter that a key names; it is recorded as given.
     pub(super) fn give(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
         let all = self.model.quantities();
         let Some(found) = all.iter().find(|of| of.name() == entry.key) else {
@@ -95,7 +95,7 @@ impl SystemDraft {
     }
 }
 
-/// Why a field cannot be had of a system, and what could be done.
+/// Why a field is not available for a system, and a suggestion.
 pub(super) fn refused(field: Field, model: &SystemModel) -> Option<(&'static str, &'static str)> {
     const OTHERS: &str = "n_unstable, abscissa, frequency, relaxation_time, reason and others are \
         of any system";

@@ -1,6 +1,6 @@
-//! What stands in a file of its own: the points of a friction law, `table = "curve.csv"` of a sweep
-//! or case file, or a system, `system = "turning.toml"` of a sweep file. It is put into the text,
-//! so that what is stored with a map or trace is complete.
+//! Data in files of their own: the points of a friction law, `table = "curve.csv"` in a sweep or
+//! case file, or a system, `system = "turning.toml"` in a sweep file. They are put into the text,
+//! so that the text stored with a map or trace is complete.
 
 use std::ops::Range;
 
@@ -8,21 +8,21 @@ use super::friction_table::{PAIRS, table_of_columns};
 use super::system::{SystemModel, shipped};
 use super::toml_reader::{Entry, SpecError, entries, parse};
 
-/// A text with what stands in other files in the place of their names.
+/// A text in which the names of other files are replaced by their contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Inlined {
     /// The text that is read and stored.
     pub text: String,
-    /// Where the name stood in the text as it was written, and where what it names stands now.
+    /// The place of the name in the original text, and the place of the contents in the new one.
     places: Option<(Range<usize>, Range<usize>)>,
 }
 
-/// Why a text with what it names cannot be had.
+/// Why the contents of a named file could not be put into a text.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotInlined {
     /// At a place of the text.
     Here(SpecError),
-    /// At a place of a file that it names.
+    /// At a place of a named file.
     There {
         /// The name of that file.
         name: String,
@@ -41,11 +41,12 @@ impl From<SpecError> for NotInlined {
 
 impl Inlined {
     /// Puts the system that `system` names, or the points of the file that `friction.table` names,
-    /// into `text`, if it names one. `read` gives the text of a file, or says why it cannot be
+    /// into `text`, if it names one. `read` returns the text of a file, or says why it cannot be
     /// read.
     ///
     /// # Errors
-    /// When the file cannot be read, or what is in it is no table: at its name. When it is no
+    /// At the name, when the file cannot be read or does not contain a table. Inside the named
+    /// file, when it is not a valid system.
     /// system: in that file.
     pub fn new(
         text: &str,
@@ -55,7 +56,7 @@ impl Inlined {
             text: text.to_owned(),
             places: None,
         };
-        // What is no TOML is told by those who read the text.
+        // Text that is no TOML is reported by its reader.
         let Ok(document) = parse(text) else {
             return Ok(unchanged);
         };
@@ -74,7 +75,7 @@ impl Inlined {
         Ok(Self::with(text, &entry, &points(&entry, name, read)?))
     }
 
-    /// `text` with another value of an entry.
+    /// `text` with the value of an entry replaced.
     fn with(text: &str, entry: &Entry, value: &str) -> Self {
         let old = entry.span.clone();
         let new = old.start..old.start + value.len();
@@ -84,7 +85,7 @@ impl Inlined {
         }
     }
 
-    /// An error in [`Inlined::text`] with its place in the text as it was written.
+    /// An error in [`Inlined::text`], moved to its place in the original text.
     #[must_use]
     pub fn in_original(&self, mut error: SpecError) -> SpecError {
         if let (Some((old, new)), Some(span)) = (&self.places, &mut error.span) {
@@ -99,7 +100,7 @@ impl Inlined {
     }
 }
 
-/// The shipped system `name`, or that of the file, as a table.
+/// The shipped system `name`, or the system of the file `name`, as a table.
 fn system_of(
     entry: &Entry,
     name: &str,
@@ -208,7 +209,7 @@ mod tests {
         assert!(message.contains("bad.csv:4: expected a speed"), "{message}");
     }
 
-    /// Places before, in and behind the points are those of the text as it was written.
+    /// Places before, inside and after the points are mapped to the original text.
     #[test]
     fn places_of_other_mistakes_are_those_of_the_text() {
         let friction = "[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\n";

@@ -1,4 +1,4 @@
-//! Reading TOML with the place of every key and value at hand, so that each error can point at it.
+//! Reads TOML with the place of every key and value, so that each error can point at it.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -8,18 +8,18 @@ use toml::de::{DeTable, DeValue};
 use super::nearest::did_you_mean;
 use crate::model::Shown;
 
-/// The most characters of a text for people.
+/// The most characters of a text for display.
 const LONGEST_LINE: usize = 200;
 
 /// Why a text was refused, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct SpecError {
-    /// What is wrong, with the range allowed.
+    /// The error, with the allowed range.
     pub message: String,
-    /// The bytes of the text that it is about; none when the whole text is meant.
+    /// The bytes of the text in question; none for the whole text.
     pub span: Option<Range<usize>>,
-    /// What could be done.
+    /// A suggestion.
     pub help: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl SpecError {
     }
 }
 
-/// A value with its key, its path in the text, and where both stand.
+/// A value with its key, its path in the text, and the places of both.
 pub(super) struct Entry<'t> {
     pub key: &'t str,
     /// Dotted path, for messages.
@@ -95,7 +95,7 @@ impl<'t> Entry<'t> {
         )
     }
 
-    /// An error that says the key is not known, with those that are.
+    /// An error about an unknown key, with the known ones.
     pub(super) fn unknown(&self, known: &[&str]) -> SpecError {
         let error = SpecError::at(
             self.key_span.clone(),
@@ -105,7 +105,7 @@ impl<'t> Entry<'t> {
         error.help(format!("{meant}known here: {}", known.join(", ")))
     }
 
-    /// An error that says the key is known, but not here; `help` says where it belongs.
+    /// An error about a key that is known, but not here; `help` says where it belongs.
     pub(super) fn elsewhere(&self, help: &str) -> SpecError {
         let message = format!("`{}` does not belong here", self.path);
         SpecError::at(self.key_span.clone(), message).help(help)
@@ -158,7 +158,7 @@ impl<'t> Entry<'t> {
         }
     }
 
-    /// A number of a range.
+    /// A number within a range.
     pub(super) fn number_within(&self, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
         let value = self.number()?;
         if range.contains(&value) {
@@ -194,7 +194,7 @@ impl<'t> Entry<'t> {
         }
     }
 
-    /// A string that stands on one line, of no more characters than pictures have room for.
+    /// A string on one line, no longer than pictures have room for.
     pub(super) fn line(&self) -> Result<&'t str, SpecError> {
         let text = self.string()?;
         if text.chars().count() > LONGEST_LINE || text.chars().any(char::is_control) {

@@ -1,8 +1,8 @@
-//! The units in which a sweep is written.
+//! The units of a sweep.
 
 use super::parameter::Parameter;
 
-/// The units in which a sweep is written; none given means dimensionless.
+/// The units of a sweep; without any, all numbers are dimensionless.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Units {
     /// Names of the units of force, length and time, as UDUNITS writes them.
@@ -32,11 +32,11 @@ impl Units {
         }
     }
 
-    /// Units as one text: the name of a preset, or the units of force, length and time with commas
-    /// between, such as `N,mm,s`.
+    /// Units from a text: the name of a preset, or the units of force, length and time separated by
+    /// commas, such as `N,mm,s`.
     ///
     /// # Errors
-    /// Says what was expected.
+    /// Says what is expected.
     pub fn read(text: &str) -> Result<Self, String> {
         if let Some(preset) = Self::preset(text.trim()) {
             return Ok(preset);
@@ -51,10 +51,10 @@ impl Units {
         })
     }
 
-    /// Whether a name can be that of a unit.
+    /// Checks that a name can be that of a unit.
     ///
     /// # Errors
-    /// Says what was expected.
+    /// Says what is expected.
     pub fn check_name(name: &str) -> Result<(), String> {
         let is_short = (1..=LONGEST_NAME).contains(&name.chars().count());
         match is_short && name.chars().all(|c| c.is_alphabetic() || c == '%') {
@@ -65,7 +65,7 @@ impl Units {
         }
     }
 
-    /// Whether there are none: all numbers are dimensionless.
+    /// Whether there are no units: all numbers are dimensionless.
     #[must_use]
     pub fn dimensionless(&self) -> bool {
         self.force_length_time.is_none()

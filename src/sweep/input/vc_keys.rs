@@ -1,4 +1,4 @@
-//! What a sweep file says of the critical velocity.
+//! A sweep file's keys for the critical velocity.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use super::search::{LIMIT, PHASES, Protocol, Search};
 use super::toml_reader::{Entry, SpecError};
 use crate::critical::switch_on::Phase;
 
-/// The share of cells that are recomputed where the file does not say.
+/// Default share of cells that are recomputed.
 const VERIFIED: f64 = 1.0 / 256.0;
 
 /// The keys `protocol`, `phase` and `verify`, each with its place.
@@ -22,7 +22,7 @@ pub(super) struct VcKeys {
 }
 
 impl VcKeys {
-    /// Takes the value of an entry that is one of the keys; false where it is none.
+    /// Reads an entry if it is one of the keys; returns whether it is.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
             "protocol" => {
@@ -55,14 +55,14 @@ impl VcKeys {
         Ok(true)
     }
 
-    /// The keys that are given, with their places.
+    /// The given keys, with their places.
     pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &Range<usize>)> {
         let places = [&self.protocol_place, &self.worst_place, &self.verify_place];
         let keys = ["protocol", "phase", "verify"].into_iter().zip(places);
         keys.filter_map(|(key, place)| Some((key, place.as_ref()?)))
     }
 
-    /// What is looked for, where `phase` is the place of a phase of switch-on that is given.
+    /// The search; `phase` is the place of a given phase of switch-on.
     pub(super) fn search(&self, phase: Option<&Range<usize>>) -> Result<Search, SpecError> {
         let refuse = |place: &Range<usize>, message: &str, help: &str| {
             Err(SpecError::at(place.clone(), message).help(help))

@@ -1,46 +1,46 @@
-//! How much memory a run takes, before it begins: bounds from the plan alone, to which `--memory`
-//! fits the threads.
+//! Bounds on the memory of a run, from the plan alone. `--memory` chooses the number of threads by
+//! them.
 
 use super::Plan;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 
-/// The program, the HDF5 library, the tiles that wait to be saved, a picture.
+/// Bytes of the program, the HDF5 library, the tiles that wait to be saved, and a picture.
 const BASE: u64 = 90 << 20;
-/// A piece in the lists of what is done and where it is.
+/// Bytes of a piece in the lists of finished pieces and of their places.
 const PER_PIECE: u64 = 128;
-/// A plane of best settings until the map is written.
+/// Bytes of a plane of best settings until the map is written.
 const PER_BEST: u64 = 64;
-/// The values of an axis: in the plan, in the map that is read back, and on the way.
+/// Copies of the values of an axis: in the plan, in the map that is read back, and in transit.
 const COPIES_OF_AXES: u64 = 4;
-/// Stack and scratch of a thread.
+/// Bytes of stack and scratch of a thread.
 const PER_THREAD: u64 = 2 << 20;
-/// A tile in a thread: as numbers, as it is compressed, and those that wait for the disk.
+/// Copies of a tile per thread: as numbers, compressed, and waiting for the disk.
 const COPIES_OF_TILES: u64 = 4;
-/// A plane with as many curves as are traced, with its copies on the way to the disk; and one more
-/// degree of stability, of whose curves only those are traced that bound a region.
+/// Bytes of a plane with the most curves that are traced, with its copies in transit; and of each
+/// further degree of stability, for which only the curves that bound a region are traced.
 const PLANE_OF_CURVES: u64 = 24 << 20;
 const CURVES_OF_A_DEGREE: u64 = 1 << 20;
-/// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical
-/// velocities are.
+/// Histories of motions that a thread keeps at once: for outcomes, and for critical velocities.
 const PASTS_OF_OUTCOMES: u64 = 1;
 const PASTS_OF_CRITICAL: u64 = 13;
-/// Steps in a unit of time √(M/κ), more than are ever seen on average; and those of a short delay.
+/// An upper bound on the average number of steps per unit of time √(M/κ), and the fewest steps
+/// kept, for a short delay.
 const STEPS_PER_TIME: f64 = 16.0;
 const STEPS_AT_LEAST: f64 = 4096.0;
 
-/// What a run takes, in bytes.
+/// The memory of a run, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
-    /// However many threads compute.
+    /// Independent of the number of threads.
     pub shared: u64,
-    /// Each thread besides.
+    /// In addition, for each thread.
     pub per_thread: u64,
 }
 
 impl Memory {
-    /// What a run of `plan` takes at most.
+    /// The most memory that a run of `plan` takes.
     #[must_use]
     pub fn of(plan: &Plan) -> Self {
         let pieces = plan.pieces();
@@ -59,13 +59,14 @@ impl Memory {
         Self { shared, per_thread }
     }
 
-    /// Bytes that a run on so many threads takes at most.
+    /// The most bytes that a run on `threads` threads takes.
     #[must_use]
     pub fn on(&self, threads: usize) -> u64 {
         self.shared + self.per_thread * threads as u64
     }
 
-    /// The most threads, up to `asked`, that stay within `limit` bytes; none where one does not.
+    /// The most threads, up to `asked`, that stay within `limit` bytes; none where one thread does
+    /// not.
     #[must_use]
     pub fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
         let fitting = limit.checked_sub(self.shared)? / self.per_thread;
@@ -74,7 +75,7 @@ impl Memory {
     }
 }
 
-/// What motions are remembered of, in one thread.
+/// Bytes of the histories of motions in one thread.
 fn pasts(plan: &Plan) -> u64 {
     let follows = plan.spec.follows_motions() || plan.spec.basin.is_some();
     let count = match (plan.spec.critical.is_some(), follows) {
@@ -85,23 +86,23 @@ fn pasts(plan: &Plan) -> u64 {
     count * past(longest_delay(plan))
 }
 
-/// What a motion with such a delay, τ √(κ/M), is remembered of, and with such a latency.
+/// Bytes of the history of a motion with this delay and latency, both in units of √(M/κ).
 fn past([delay, latency]: [f64; 2]) -> u64 {
-    // Two delays are kept. What the memory of a deque may be larger than what is in it.
+    // Two delays are kept. A deque may reserve more than it holds.
     let kept = |delay: f64| {
         let steps = 2.0 * delay * STEPS_PER_TIME + STEPS_AT_LEAST;
         let steps = (steps.min(MOST_KEPT as f64) as u64).next_power_of_two();
         steps * BYTES_OF_A_STEP as u64
     };
     match latency > 0.0 {
-        // Kinks come back after both.
+        // With a latency, kinks come back after the delay and after the latency.
         true => 2 * kept(f64::INFINITY),
         false => kept(delay),
     }
 }
 
-/// The delay of a setting, τ √(κ/M), as the memory of the feedback makes it longer, and the
-/// latency.
+/// The delay of a setting, lengthened for the memory of the feedback, and the latency, both in
+/// units of √(M/κ).
 fn delay(setting: &Setting) -> [f64; 2] {
     let unit = setting.oscillator().map_or(1.0, |o| o.time_unit());
     let share = 1.0 - setting.get(Parameter::Memory).abs();
@@ -109,24 +110,24 @@ fn delay(setting: &Setting) -> [f64; 2] {
     [delay, setting.get(Parameter::Latency) / unit]
 }
 
-/// Bytes that following one motion of a setting takes at most.
+/// The most bytes that following one motion of a setting takes.
 #[must_use]
 pub fn of_motion(setting: &Setting) -> u64 {
     PASTS_OF_OUTCOMES * past(delay(setting))
 }
 
-/// Bytes that looking for the critical velocity of a setting takes at most.
+/// The most bytes that the search for the critical velocity of a setting takes.
 #[must_use]
 pub fn of_critical_velocity(setting: &Setting) -> u64 {
     PASTS_OF_CRITICAL * past(delay(setting))
 }
 
-/// The longest delay of a sweep, τ √(κ/M), and the longest latency.
+/// The longest delay and the longest latency of a sweep, in units of √(M/κ).
 fn longest_delay(plan: &Plan) -> [f64; 2] {
     let (mut longest, mut others) = (plan.spec.fixed.clone(), plan.spec.fixed.clone());
     for axis in &plan.spec.axes {
         let (from, to) = axis.range();
-        // The unit of time is the shorter the smaller the mass and the larger the stiffness.
+        // The smaller the mass and the larger the stiffness, the shorter the unit of time.
         let (at, other) = match axis.parameter.known() {
             Some(Parameter::Mass) => (from, to),
             _ => (to, from),
@@ -164,8 +165,8 @@ mod tests {
         assert!(m.on(m.threads_within(200, 9).unwrap()) <= 200);
     }
 
-    /// Longer delays, a smaller mass, and more pasts take more; never more than what a motion may
-    /// keep.
+    /// Memory grows with a longer delay, a smaller mass and more histories, up to the most that a
+    /// motion keeps.
     #[test]
     fn pasts_grow_with_the_delay_up_to_what_is_kept() {
         let past = (MOST_KEPT * BYTES_OF_A_STEP) as u64;

@@ -1,9 +1,9 @@
 //! The plan of a sweep: its cells, cut into tiles.
 //!
-//! - `memory`: how much memory a run takes at most, and how many threads that leaves
-//! - `pieces`: what a sweep is made of, shards of it, and what is still to be computed
+//! - `memory`: bounds on the memory of a run, and how many threads they allow
+//! - `pieces`: the pieces of a sweep, its shards, and what is still to be computed
 //! - `tile`: rectangular blocks of cells
-//! - `tile_size`: how large tiles are, where lines may be cut
+//! - `tile_size`: the size of tiles, and where lines may be cut
 
 pub mod memory;
 pub mod pieces;
@@ -30,16 +30,16 @@ use crate::sweep::input::setting::Setting;
 use crate::sweep::input::spec::SweepSpec;
 use crate::sweep::input::toml_reader::SpecError;
 
-/// More cells than this are refused.
+/// The most cells of a map.
 pub const MOST_CELLS: u64 = 10_000_000_000_000;
-/// More tiles than this are refused: the list of what is done, and of where it is, takes a quarter
-/// of a gigabyte.
+/// The most tiles of a map: the lists of finished tiles and their places then take a quarter of a
+/// gigabyte.
 pub const MOST_TILES: usize = 1 << 21;
-/// More planes of curves and best settings than this are refused.
+/// The most planes of curves and of best settings.
 const MOST_PLANES: u64 = 1_000_000;
-/// Planes up to which crossing curves are traced without being asked for.
+/// The most planes whose crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
-/// Planes up to which that holds where every curve is followed step by step.
+/// The same where every curve is followed step by step.
 const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.
@@ -65,7 +65,8 @@ impl Plan {
         Self::with_tiles_of(cells, spec)
     }
 
-    /// Plans a sweep with tiles of about `cells_per_tile` cells; no value in the map depends on it.
+    /// Plans a sweep with tiles of about `cells_per_tile` cells. No value in the map depends on
+    /// this size.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -125,7 +126,7 @@ impl Plan {
         self.shape().iter().map(|&n| n as u64).product()
     }
 
-    /// Number of cells of a piece; 0 where it is no tile.
+    /// Number of cells of a piece; 0 unless it is a tile.
     #[must_use]
     pub fn cells_of(&self, piece: Piece) -> u64 {
         match piece {
@@ -141,7 +142,7 @@ impl Plan {
         (fields + size_of::<u8>()) as u64
     }
 
-    /// What it is made of.
+    /// The pieces of the sweep.
     #[must_use]
     pub fn pieces(&self) -> Pieces {
         Pieces {
@@ -163,7 +164,7 @@ impl Plan {
         }
     }
 
-    /// Number of planes whose best settings are looked for.
+    /// Number of planes in which the best setting is searched for.
     #[must_use]
     pub fn best_planes(&self) -> u64 {
         match self.best_plane() {
@@ -174,7 +175,8 @@ impl Plan {
         }
     }
 
-    /// The axes (gain, delay) of the planes whose best settings are looked for, if they are.
+    /// The axes (gain, delay) of the planes in which the best setting is searched for; none without
+    /// this search.
     #[must_use]
     pub fn best_plane(&self) -> Option<(usize, usize)> {
         gain_plane(&self.spec.axes).filter(|_| self.spec.best)
@@ -190,7 +192,7 @@ impl Plan {
         setting
     }
 
-    /// The delays in `range` of the sweep's, or the one fixed delay.
+    /// The delays of the sweep in `range`, or the one fixed delay.
     #[must_use]
     pub fn delays(&self, range: std::ops::Range<usize>) -> Vec<f64> {
         match self.tau_axis {
@@ -214,8 +216,8 @@ impl Plan {
         }
     }
 
-    /// Everything on which the cells depend, by name, with numbers where there are any; equal plans
-    /// have equal cells.
+    /// Everything on which the cells depend: names, with their numbers. Equal plans have equal
+    /// cells.
     fn facts(&self) -> Vec<(&str, Cow<'_, [f64]>)> {
         let spec = &self.spec;
         let fixed = &spec.fixed;
@@ -247,7 +249,7 @@ impl Plan {
         facts.extend(spec.fields.iter().map(|f| (f.first_name(), none())));
         facts.push(("marginal", one(spec.tolerance.0)));
         facts.push(("boundaries", one(f64::from(self.boundary_plane.is_some()))));
-        // Absent where there are none: maps of earlier versions stay equal.
+        // Left out where empty: the hashes of earlier maps stay valid.
         if !spec.degrees_of_stability.is_empty() {
             let degrees = spec.degrees_of_stability.as_slice();
             facts.push(("degree_of_stability", degrees.into()));
@@ -269,7 +271,8 @@ impl Plan {
             let horizon = how.horizon.unwrap_or(0.0);
             let numbers = vec![horizon, how.tolerance, how.steps as f64];
             facts.push(("simulation", numbers.into()));
-            // Absent where a start is given, and where motions began on their equilibrium.
+            // Left out where a start is given, and for earlier maps, whose motions began in
+            // equilibrium.
             if how.disturbance != 0.0 {
                 facts.push(("disturbance", one(how.disturbance)));
             }
@@ -290,8 +293,8 @@ impl Plan {
         in_hexadecimal(&hash.finalize())
     }
 
-    /// What the hash is made of in words, to tell where two plans differ: every name with its
-    /// numbers, long lists by their ends and a hash.
+    /// The contents of the hash in words, to show where two plans differ: every name with its
+    /// numbers, long lists as their ends and a hash.
     #[must_use]
     pub fn description(&self) -> Vec<(String, String)> {
         let described = |values: &[f64]| match values {
@@ -328,7 +331,7 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
+/// The plane of crossing curves; none where there is no such plane, or none is wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
     let (p, q) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
     let planes: u64 = spec
@@ -344,15 +347,15 @@ fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
     let most = match (traced_by_closed_form(spec, q), spec.beyond_letter()) {
         (true, _) => PLANES_TRACED_UNASKED,
         (false, true) => PLANES_WALKED_UNASKED,
-        // The letter's own planes without the delay have them where they are asked for.
+        // In the letter's own planes without the delay, curves are traced only when asked for.
         (false, false) => 0,
     };
     let wanted = asked.unwrap_or(planes <= most);
     wanted.then_some((p, q))
 }
 
-/// Whether the curves of planes whose second axis is `q` are those of the letter's own lines of
-/// delays.
+/// Whether the curves in planes with the second axis `q` come from the closed form for the letter's
+/// lines of delays.
 #[must_use]
 pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
     spec.axes[q].parameter == Parameter::Tau && !spec.beyond_letter()

@@ -1,11 +1,11 @@
-//! What a sweep is made of: planes of curves, planes of best settings, tiles; and which of them a
+//! The pieces of a sweep (planes of curves, planes of best settings, tiles), and which of them a
 //! run has to compute.
 
 use std::fmt;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A part of a sweep that is computed, stored and checked by itself; each kind is numbered from 0.
+/// A part of a sweep that is computed, stored and checked on its own. Each kind is numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Piece {
     /// The curves of a plane, see [`crate::sweep::cells::boundaries::plane`].
@@ -16,7 +16,7 @@ pub enum Piece {
     Tile(u64),
 }
 
-/// How many pieces of each kind a plan has. All together are numbered: curves first, tiles last.
+/// How many pieces of each kind a plan has. Places number all of them: curves first, tiles last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pieces {
     /// Planes of curves.
@@ -28,13 +28,13 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// How many there are.
+    /// Number of all pieces.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.curves + self.best + self.tiles
     }
 
-    /// The piece at `place`, less than [`Pieces::total`].
+    /// The piece at `place`, which is less than [`Pieces::total`].
     #[must_use]
     pub fn at(&self, place: u64) -> Piece {
         match place.checked_sub(self.curves) {
@@ -46,7 +46,7 @@ impl Pieces {
         }
     }
 
-    /// Where a piece stands; none for one that is not there.
+    /// The place of a piece; none for a piece that the plan lacks.
     #[must_use]
     pub fn place(&self, piece: Piece) -> Option<u64> {
         let (first, number, count) = match piece {
@@ -58,21 +58,21 @@ impl Pieces {
     }
 }
 
-/// Of `of` parts of a sweep, the one of number `number`, counted from 1: every `of`-th piece.
+/// One of `of` parts of a sweep: every `of`-th piece. `number` counts from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
     of: u64,
 }
 
-/// More shards than this are taken for a slip of the finger.
+/// The most shards; more are taken for a typing error.
 const MOST_SHARDS: u64 = 100_000;
 
 impl Shard {
     /// The whole sweep.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether the piece at `place` belongs to it.
+    /// Whether the piece at `place` belongs to the shard.
     #[must_use]
     pub fn holds(self, place: u64) -> bool {
         place % self.of == self.number - 1
@@ -84,13 +84,13 @@ impl Shard {
         self.of == 1
     }
 
-    /// How many of `total` pieces it holds.
+    /// How many of `total` pieces belong to the shard.
     #[must_use]
     pub fn count(self, total: u64) -> u64 {
         (total + self.of - self.number) / self.of
     }
 
-    /// Number, from 1, and how many there are.
+    /// The number of the shard, from 1, and how many shards there are.
     #[must_use]
     pub fn numbers(self) -> (u64, u64) {
         (self.number, self.of)
@@ -122,7 +122,7 @@ impl FromStr for Shard {
     }
 }
 
-/// In which order pieces are computed; no value depends on it.
+/// The order in which pieces are computed; no value depends on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Order {
     /// By number.
@@ -130,29 +130,29 @@ pub enum Order {
     Forward,
     /// From the last to the first.
     Backward,
-    /// All over the map from the beginning on.
+    /// Spread over the whole map from the beginning.
     Spread,
 }
 
-/// The pieces that are to be computed, handed out one after the other to whoever asks.
+/// The pieces to compute; any thread may take the next one.
 #[derive(Debug)]
 pub struct Todo {
     pieces: Pieces,
     shard: Shard,
     order: Order,
-    /// Bit by bit, those that are done.
+    /// One bit for each finished piece.
     done: Vec<u64>,
     next: AtomicU64,
 }
 
 impl Todo {
-    /// All of `pieces`.
+    /// A list of all of `pieces`.
     #[must_use]
     pub fn all(pieces: Pieces) -> Self {
         Self::new(pieces, Shard::WHOLE, Order::Forward)
     }
 
-    /// The pieces of a shard, in an order.
+    /// A list of the pieces of a shard, in `order`.
     #[must_use]
     pub fn new(pieces: Pieces, shard: Shard, order: Order) -> Self {
         Self {
@@ -175,14 +175,14 @@ impl Todo {
         self.shard.holds(place) && self.done[(place / 64) as usize] >> (place % 64) & 1 == 0
     }
 
-    /// All pieces on the list, in the order of their numbers.
+    /// All pieces on the list, by number.
     pub fn left(&self) -> impl Iterator<Item = Piece> {
         (0..self.pieces.total())
             .filter(|&place| self.wanted(place))
             .map(|place| self.pieces.at(place))
     }
 
-    /// The next piece that nobody was given yet.
+    /// The next piece that no thread has taken.
     pub fn next(&self) -> Option<Piece> {
         let total = self.pieces.total();
         loop {
@@ -204,8 +204,8 @@ impl Todo {
     }
 }
 
-/// A number in [0, 1) for each sample: multiples of the golden section fall evenly, wherever the
-/// sampling ends.
+/// A number in [0, 1) for each sample. Multiples of the golden ratio stay evenly spread at any
+/// number of samples.
 #[must_use]
 pub fn spread(sample: u64) -> f64 {
     (sample as f64 * GOLDEN).fract()
@@ -213,7 +213,7 @@ pub fn spread(sample: u64) -> f64 {
 
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// SplitMix64's finalizer: neighbouring numbers become unrelated ones.
+/// SplitMix64's finalizer: it turns neighbouring numbers into unrelated ones.
 #[must_use]
 pub fn mixed(number: u64) -> u64 {
     let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -222,8 +222,8 @@ pub fn mixed(number: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A number without common factor with `total`, near its golden section: its multiples visit every
-/// place once.
+/// A number near the golden ratio of `total` and coprime to it: its multiples visit every place
+/// once.
 fn stride(total: u64) -> u64 {
     let golden = (total as f64 * GOLDEN) as u64;
     (golden.max(1)..=total.max(1))
@@ -245,7 +245,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever the order and the shards, every piece that is not done is handed out once.
+        /// Whatever the order and the shards, every unfinished piece is taken exactly once.
         #[test]
         fn every_piece_once(
             curves in 0_u64..20,

@@ -1,6 +1,6 @@
 //! Tiles: rectangular blocks of cells.
 
-/// How a map is cut into tiles of equal shape; those at the far edges reach beyond the map.
+/// How a map is cut into tiles of equal shape. Tiles at the far edges extend beyond the map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TileGrid {
     shape: Vec<usize>,
@@ -53,7 +53,7 @@ impl TileGrid {
         self.tiles_along().product()
     }
 
-    /// Never: a map has at least one cell.
+    /// Always false: a map has at least one cell.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -66,7 +66,7 @@ impl TileGrid {
             .map(|(&n, &t)| n.div_ceil(t))
     }
 
-    /// The tile of number `number`, row by row, last axis fastest.
+    /// The tile with number `number`, counted row by row, last axis fastest.
     #[must_use]
     pub fn tile(&self, number: usize) -> Tile {
         let along: Vec<usize> = self.tiles_along().collect();
@@ -83,15 +83,15 @@ impl TileGrid {
         Tile { offset, extent }
     }
 
-    /// Cells between neighbours along each axis in a tile's memory: last axis fastest, full tile
-    /// shape.
+    /// Distance between neighbouring cells along each axis in a tile's memory, which has the full
+    /// tile shape, last axis fastest.
     #[must_use]
     pub fn strides(&self) -> Vec<usize> {
         memory_strides(&self.tile_shape)
     }
 }
 
-/// Cells between neighbours along each axis of a box, last axis fastest.
+/// Distance between neighbouring cells along each axis of a box, last axis fastest.
 pub(crate) fn strides_of(shape: &[usize]) -> Vec<u64> {
     let mut strides = vec![1; shape.len()];
     for axis in (1..shape.len()).rev() {
@@ -100,7 +100,7 @@ pub(crate) fn strides_of(shape: &[usize]) -> Vec<u64> {
     strides
 }
 
-/// Places between neighbours along each axis of a box that is in memory, last axis fastest.
+/// The same for a box in memory.
 pub(crate) fn memory_strides(shape: &[usize]) -> Vec<usize> {
     let strides = strides_of(shape).into_iter();
     strides.map(|stride| stride as usize).collect()
@@ -112,7 +112,7 @@ pub(crate) fn place_of(index: &[usize], strides: &[usize]) -> usize {
     index.iter().zip(strides).map(|(i, s)| i * s).sum()
 }
 
-/// The index in a box of that shape of its cell of number `number`, last axis fastest.
+/// The index of the cell with number `number` in a box of shape `shape`, last axis fastest.
 pub(crate) fn index_of(number: u64, shape: &[usize]) -> Vec<usize> {
     let (mut index, mut rest) = (vec![0; shape.len()], number);
     for (place, &length) in index.iter_mut().zip(shape).rev() {

@@ -1,32 +1,30 @@
-//! How large tiles are, and where lines of delays may be cut.
+//! The size of tiles, and where lines of delays may be cut.
 
 use crate::sweep::input::field::Field;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::spec::SweepSpec;
 
-/// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write
-/// well.
+/// Cells in a tile, roughly: few enough for a processor's cache, enough to compress and write well.
 const CELLS_PER_TILE: usize = 1 << 18;
-/// Cells in a tile where roots are followed from cell to cell: each cell costs thousands of times
-/// as much, and tiles of about the same time keep all threads busy to the end and a run quick to
-/// stop.
+/// Cells in a tile where roots are followed from cell to cell. Each cell costs thousands of times
+/// as much. Tiles of about equal time keep all threads busy to the end and let a run stop quickly.
 const CELLS_PER_ROOT_TILE: usize = 1 << 14;
-/// Cells in a tile where motions are followed, which takes about a millisecond a cell.
+/// Cells in a tile where motions are followed: about a millisecond per cell.
 const CELLS_PER_MOTION_TILE: usize = 1 << 8;
-/// Motions in a tile where each cell has many, about a second's work.
+/// Motions in a tile where each cell has many: about a second of work.
 const MOTIONS_PER_TILE: usize = 1 << 11;
-/// Cells in a tile where critical velocities are looked for, which takes up to a second a cell.
+/// Cells in a tile where critical velocities are searched for: up to a second per cell.
 const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
-/// Delays in a tile at most, so that memory stays bounded on the longest line.
+/// The most delays in a tile, so that memory stays bounded on the longest line.
 const DELAYS_PER_TILE: usize = 1 << 17;
-/// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value
+/// Lines of delays are cut only at multiples of this. Tracking restarts there, so that no value
 /// depends on the tiles.
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
-/// Lines are cut at multiples of this where critical velocities start from their neighbours;
-/// divides the one of roots.
+/// The same for critical velocities that start from their neighbours; a divisor of the block of
+/// roots.
 const BLOCK_OF_VC: usize = crate::critical::along_delay::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
-/// Cells in a tile, about: those of a tile take about the same time, whatever is computed.
+/// Cells in a tile, roughly. Tiles take about the same time, whatever is computed.
 pub(super) fn cells_per_tile(spec: &SweepSpec) -> usize {
     if spec.critical.is_some() {
         CELLS_PER_CRITICAL_TILE
@@ -41,8 +39,9 @@ pub(super) fn cells_per_tile(spec: &SweepSpec) -> usize {
     }
 }
 
-/// Lines are cut at multiples of so many delays. What starts from the delay before goes on in its
-/// block only; motions, and stick-slip that control is switched on in, know nothing of it.
+/// The number of delays at whose multiples lines are cut. Computations that start from the previous
+/// delay do so only within a block. Motions, and control switched on in stick-slip, do not depend
+/// on the previous delay.
 pub(super) fn block(spec: &SweepSpec) -> usize {
     let critical = spec.critical.map(|search| search.protocol);
     match critical {
@@ -66,8 +65,8 @@ fn proves_radii(spec: &SweepSpec) -> bool {
     spec.fields.contains(&Field::StabilityRadius)
 }
 
-/// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring
-/// lines as fit into `cells`.
+/// The shape of tiles: whole lines where they fit, else whole blocks of `block` delays; then as
+/// many neighbouring lines as fit into `cells`.
 pub(super) fn tile_shape(
     shape: &[usize],
     tau_axis: Option<usize>,
@@ -89,7 +88,7 @@ pub(super) fn tile_shape(
     tile
 }
 
-/// The size of about equal parts of `length`, each at most `most` (or 1).
+/// The size of roughly equal parts of `length`, each at most `most` (or 1).
 fn part(length: usize, most: usize) -> usize {
     length.div_ceil(length.div_ceil(most.max(1)))
 }
@@ -100,8 +99,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// However long the axes and small the tiles, lines are cut between blocks only, and tiles
-        /// stay within their room.
+        /// However long the axes and small the tiles, lines are cut only between blocks, and tiles
+        /// stay within their size.
         #[test]
         fn delays_are_cut_between_blocks(
             delays in prop_oneof![1_usize..10_000, 1_usize..10_000_000],

@@ -1,4 +1,4 @@
-//! What a sweep beyond the letter's own feedback cannot have.
+//! Checks of sweeps that go beyond the letter's own feedback.
 
 use std::ops::Range;
 
@@ -14,7 +14,8 @@ use crate::sweep::input::toml_reader::SpecError;
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 impl Draft {
-    /// Motions and margins know memory, latency, lags and a state of friction as far as they do.
+    /// Checks that motions and margins support the memory, latency, lags and state of friction of
+    /// the sweep.
     pub(super) fn check_beyond_letter(&self, fixed: &Setting) -> Result<(), SpecError> {
         self.check_motions_are_known(fixed)?;
         let law = fixed.law().filter(|law| law.has_state());
@@ -36,7 +37,7 @@ impl Draft {
         }
     }
 
-    /// Where motions are followed there is nothing that they do not know.
+    /// Checks that motions support all parameters of the sweep, where motions are followed.
     fn check_motions_are_known(&self, fixed: &Setting) -> Result<(), SpecError> {
         let nonlinear = [&self.motion_place, &self.vc_place].into_iter().flatten();
         let basin = self.basin_place.as_ref().map(|(_, place)| place);
@@ -54,9 +55,9 @@ impl Draft {
         }
     }
 
-    /// What is asked for that is known of the letter's own feedback alone, and where.
+    /// The first request that is supported for the letter's own feedback only, with its place.
     fn of_letter_alone(&self, with_state: bool) -> Option<(&'static str, Range<usize>)> {
-        // With a state the slope does not say all of the friction.
+        // With a state, the slope does not describe friction completely.
         let slope = |field: Field| field == Field::DAbscissaDMuPrime;
         let slope = self.limit.first_field(slope).filter(|_| with_state);
         let margins = self
@@ -66,7 +67,7 @@ impl Draft {
         asked.map(|(field, place)| (field.name(), place.clone()))
     }
 
-    /// The ratio of stiffnesses is that of one law.
+    /// Checks that the ratio of stiffnesses is asked only of rate-and-state friction.
     pub(super) fn check_stiffness_ratio(&self, fixed: &Setting) -> Result<(), SpecError> {
         let ratio = |field: Field| field == Field::StiffnessRatio;
         match self.limit.first_field(ratio).filter(|_| !fixed.has_state()) {

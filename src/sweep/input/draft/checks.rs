@@ -1,4 +1,4 @@
-//! Whether what a sweep file says fits together.
+//! Checks that the entries of a sweep file are consistent.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use crate::sweep::input::setting::Setting;
 use crate::sweep::input::toml_reader::SpecError;
 
 impl Draft {
-    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are
-    /// no axes, and what is looked for of the critical velocity.
+    /// Checks a sweep of sliding or of motions. Returns the parameters that are no axes, and the
+    /// search for the critical velocity.
     pub(super) fn check(&self) -> Result<(Setting, Option<Search>), SpecError> {
         self.limit.check_absent()?;
         let without_v0 = self.given.law_place().is_some() && !self.needs_v0();
@@ -30,7 +30,7 @@ impl Draft {
         Ok((fixed, critical))
     }
 
-    /// There are boundaries beside which to trace degrees of stability.
+    /// Checks that boundaries are traced where degrees of stability are requested.
     pub(super) fn check_degrees(&self) -> Result<(), SpecError> {
         let Some(place) = &self.degrees_place else {
             return Ok(());
@@ -54,7 +54,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Best settings are looked for in planes of a gain and the delay: both must be axes.
+    /// Checks that the sweep has axes for a gain and the delay, the planes of best settings.
     fn check_best(&self) -> Result<(), SpecError> {
         match &self.best {
             Some(place) if gain_plane(&self.axes).is_none() => {
@@ -69,7 +69,7 @@ impl Draft {
         }
     }
 
-    /// The law is well posed in every cell: μ0 at its largest against μ_S at its smallest.
+    /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
         let Some(place) = self.given.ill_posed_place() else {
             return Ok(());
@@ -77,7 +77,7 @@ impl Draft {
         let mut worst = fixed.clone();
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
-            // With a slope at rest, μ0 grows with v_s and with the slope's size.
+            // With a given slope at rest, μ0 grows with v_s and with the magnitude of the slope.
             let Some(parameter) = axis.parameter.known() else {
                 continue;
             };
@@ -94,15 +94,15 @@ impl Draft {
     }
 }
 
-/// Motions: what fields of theirs need, and what has no effect without them.
+/// Motions: what their fields need, and what has no effect without them.
 impl Draft {
-    /// The values of a parameter in the sweep: of its axis, or the fixed one.
+    /// The values of a parameter in the sweep: those of its axis, or the fixed one.
     fn values(&self, fixed: &Setting, parameter: Parameter) -> Vec<f64> {
         let axis = self.axes.iter().find(|axis| axis.parameter == parameter);
         axis.map_or_else(|| vec![fixed.get(parameter)], |axis| axis.values.clone())
     }
 
-    /// Fields of the critical velocity or of motions have what they need; what is looked for.
+    /// Checks the needs of fields of the critical velocity or of motions. Returns the search.
     fn check_nonlinear(&self, fixed: &Setting) -> Result<Option<Search>, SpecError> {
         if let Some((name, place)) = &self.basin_place {
             self.check_no_search()?;
@@ -136,7 +136,7 @@ impl Draft {
             .help("give [friction] and v0 instead of mu_prime and mu_k"))
     }
 
-    /// No gain acts without a delay.
+    /// Checks that no delay is 0 where a gain acts.
     fn check_delays(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
         let gains = [Parameter::AlphaV, Parameter::AlphaN];
         let mut gains = gains.into_iter().flat_map(|p| self.values(fixed, p));
@@ -160,7 +160,7 @@ impl Draft {
         self.simulation.check_horizon(name, latest)
     }
 
-    /// Fields of many starts, the first of which is `name`, have what they need.
+    /// Checks the needs of fields over many starts, the first of which is `name`.
     fn check_basin(
         &self,
         fixed: &Setting,
@@ -212,9 +212,9 @@ impl Draft {
     }
 }
 
-/// Critical velocities: what fields of theirs need, and what has no effect without them.
+/// Critical velocities: what their fields need, and what has no effect without them.
 impl Draft {
-    /// Whether anything in the sweep is about v0: a law without one still has a critical velocity.
+    /// Whether anything in the sweep depends on v0. A law without v0 still has a critical velocity.
     fn needs_v0(&self) -> bool {
         let fields = self.fields.iter().flatten();
         let curves = self.boundaries == Some(true) || !self.degrees.is_empty();
@@ -225,7 +225,7 @@ impl Draft {
             || fields.copied().any(|f| about_v0(&f))
     }
 
-    /// What is looked for, where a field of the critical velocity stands at `place`.
+    /// The search, where a field of the critical velocity stands at `place`.
     fn critical_search(&self, fixed: &Setting, place: &Range<usize>) -> Result<Search, SpecError> {
         self.check_law_is_there(place, "the critical velocity depends on the whole of it")?;
         if let Some((name, place)) = &self.start_place {
@@ -241,7 +241,7 @@ impl Draft {
         self.vc.search(phase)
     }
 
-    /// Nothing is given that would not be looked at.
+    /// Checks that nothing is given that would be ignored.
     fn check_no_effect_on_vc(&self) -> Result<(), SpecError> {
         let place = |p: Parameter| Some((p.name(), self.given.place(p)?));
         let v0 = place(Parameter::V0).filter(|_| !self.needs_v0());
@@ -266,7 +266,7 @@ impl Draft {
         }
     }
 
-    /// No key of the critical velocity where no field of it is asked for.
+    /// Checks that there are no keys of the critical velocity without a field of it.
     fn check_no_search(&self) -> Result<(), SpecError> {
         match self.vc.given().next() {
             Some((key, place)) => {

@@ -1,4 +1,4 @@
-//! A sweep of a system from a file: whether it fits together.
+//! Checks that a sweep of a system is consistent.
 
 use super::Draft;
 use crate::sweep::input::parameter::Parameter;
@@ -7,7 +7,7 @@ use crate::sweep::input::system_draft::{SystemDraft, refused};
 use crate::sweep::input::toml_reader::SpecError;
 
 impl Draft {
-    /// Everything fits together in a sweep of a system; gives the parameters that are no axes.
+    /// Checks a sweep of a system. Returns the parameters that are no axes.
     pub(super) fn check_system(&self, system: &SystemDraft) -> Result<Setting, SpecError> {
         self.check_degrees()?;
         let tau = Parameter::Tau;

@@ -1,14 +1,13 @@
-//! Numbers made of a system's parameters, each with a bound on its error.
+//! Numbers computed from a system's parameters, each with a bound on its error.
 
 use super::tape::Function;
 use crate::model::elementary::{cos, exp, expm1, ln, sin};
 
-/// What one operation adds at most, relative to its result: libm errs by less than a unit in the
-/// last place.
+/// The relative rounding error of one operation: libm errs by less than a unit in the last place.
 const UNIT: f64 = f64::EPSILON;
 
-/// A number and a bound on its distance to the exact one. Where there is no such number, as of 1/0,
-/// one of them is not finite.
+/// A number and a bound on its distance from the exact one. At least one of the two is not finite
+/// where the exact number does not exist, as for 1/0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounded {
     pub value: f64,
@@ -21,7 +20,7 @@ impl Bounded {
         error: f64::INFINITY,
     };
 
-    /// A number as it was given.
+    /// A given number, without error.
     pub(super) const fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
@@ -30,7 +29,7 @@ impl Bounded {
         self.value.is_finite() && self.error.is_finite()
     }
 
-    /// `error` is what the operands bring, `rounding` what the operation adds.
+    /// `error` comes from the operands, `rounding` from the operation.
     fn of(value: f64, error: f64, rounding: f64) -> Self {
         // The bound itself is rounded as well.
         let error = if error + rounding == 0.0 {
@@ -50,7 +49,7 @@ impl Bounded {
 
     pub(super) fn plus(self, other: Self) -> Self {
         let sum = self.value + other.value;
-        // What rounding took away, exactly: sums such as 1 + 0.5 or a − a are exact.
+        // The exact rounding error: sums such as 1 + 0.5 or a − a have none.
         let other_part = sum - self.value;
         let lost = (self.value - (sum - other_part)) + (other.value - other_part);
         Self::of(sum, self.error + other.error, lost.abs())
@@ -110,7 +109,7 @@ impl Bounded {
         match (apart, first) {
             (true, true) => self,
             (true, false) => other,
-            // The exact larger one may be either.
+            // Either may be the larger one.
             (false, _) => Self {
                 value: self.value.max(other.value),
                 error: self.error.max(other.error),
@@ -127,7 +126,7 @@ impl Bounded {
                     return Self::NONE;
                 }
                 let root = x.sqrt();
-                // Near 0 the root of the error is all that is known.
+                // Near 0 only the root of the error bounds the result.
                 let spread = match error {
                     0.0 => 0.0,
                     _ if least > 0.0 => error / (root + least.sqrt()),
@@ -151,7 +150,7 @@ impl Bounded {
     }
 }
 
-/// A product with it is exact: 0 or a power of two, within the range of normal numbers.
+/// Whether a product with `x` is exact: 0 or a power of two, within the range of normal numbers.
 fn scales_exactly(x: f64) -> bool {
     const MANTISSA: u64 = (1 << 52) - 1;
     x == 0.0 || (x.to_bits() & MANTISSA == 0 && (1e-30..1e30).contains(&x.abs()))
@@ -162,7 +161,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A number with fewer digits than its bound allows, and where it really is.
+    /// A perturbed number with a bound on the perturbation, and the exact number.
     fn about() -> impl Strategy<Value = (Bounded, f64)> {
         (
             -8.0..8.0_f64,
@@ -176,8 +175,7 @@ mod tests {
     }
 
     proptest! {
-        /// What is made of the numbers themselves lies within the bounds of what is made of those
-        /// near them.
+        /// Results of the true numbers lie within the bounds of the results of nearby ones.
         #[test]
         fn bounds_hold((a, x) in about(), (b, y) in about(), n in -3..4_i32) {
             let cases = [
@@ -196,7 +194,7 @@ mod tests {
             ];
             for (i, (found, exact)) in cases.into_iter().enumerate() {
                 if found.is_known() {
-                    // The comparison rounds as well.
+                    // The comparison itself is rounded.
                     let allowed = found.error + 8.0 * f64::EPSILON * exact.abs();
                     prop_assert!((found.value - exact).abs() <= allowed, "{i}: {found:?} {exact}");
                 }

@@ -1,4 +1,4 @@
-//! Reading an expression: a polynomial in s with named parameters.
+//! Reads an expression: a polynomial in s with named parameters.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -8,8 +8,8 @@
 //! operand = number | name | "(" sum ")" | function "(" sum { "," sum } ")"
 //! ```
 //!
-//! What is divided by, and what functions are of, has no s in it. Operations are written down as
-//! they are read, for a [`Tape`].
+//! Divisors and arguments of functions do not contain s. Operations are recorded in the order in
+//! which they are read, for a [`Tape`].
 
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ use crate::sweep::input::nearest::did_you_mean;
 
 /// The longest expression, in bytes.
 const LONGEST: usize = 4096;
-/// Parentheses and signs within one another.
+/// The deepest nesting of parentheses and signs.
 const DEEPEST: usize = 64;
 
 /// The name of the variable.
@@ -34,12 +34,12 @@ pub(super) const VARIABLE: &str = "s";
 /// The names of functions.
 pub(super) const FUNCTIONS: [&str; 7] = ["sqrt", "exp", "log", "sin", "cos", "min", "max"];
 
-/// What names there are, and how deep the reader is in parentheses.
+/// The known names, and how deep the reader is in parentheses.
 #[derive(Debug, Clone)]
 struct State<'n> {
     names: &'n [&'n str],
     depth: usize,
-    /// Where the signs stand whose operands are being read.
+    /// Places of the signs whose operands are being read.
     signs: Vec<usize>,
 }
 
@@ -65,7 +65,7 @@ impl<'n> ParserError<Input<'n>> for Misread {
     }
 }
 
-/// One step deeper, if there may be one.
+/// Goes one level deeper, unless that is too deep.
 fn descend(input: &mut Input) -> Read<()> {
     if input.state.depth == DEEPEST {
         let at = input.current_token_start();
@@ -81,14 +81,14 @@ fn ascend(input: &mut Input, part: Part) -> Part {
     part
 }
 
-/// The next character, which is left where it is, with its place.
+/// The next character and its place, without consuming it.
 fn ahead(input: &Input) -> (Option<char>, Range<usize>) {
     let next = input.peek_token();
     let at = input.current_token_start();
     (next, at..at + next.map_or(0, char::len_utf8))
 }
 
-/// What stands there, for messages.
+/// What was found, for messages.
 fn found(next: Option<char>) -> String {
     match next {
         None => "the end".into(),
@@ -109,7 +109,7 @@ fn operand(input: &mut Input) -> Read<Part> {
             part.place = place.start..closed(input, &place)?;
             Ok(part)
         }
-        // Signs are for whoever comes next.
+        // Another parser handles signs.
         (Some('+' | '-'), _) => Err(Misread::from_input(input)),
         (next, place) => {
             let expected = "expected a number, a name or `(`";
@@ -121,7 +121,7 @@ fn operand(input: &mut Input) -> Read<Part> {
     }
 }
 
-/// Reads a `)` that closes what was opened at `opened`; where it ends.
+/// Reads the `)` that closes the parenthesis at `opened`; returns where it ends.
 fn closed(input: &mut Input, opened: &Range<usize>) -> Read<usize> {
     multispace0.parse_next(input)?;
     match ahead(input) {
@@ -277,7 +277,7 @@ fn sign<'n>(input: &mut Input<'n>) -> Read<Prefix<Input<'n>, Part, Misread>> {
     }
 }
 
-/// A part whose sign stands before it.
+/// Applies the sign before a part.
 fn signed(input: &mut Input, part: Part) -> Part {
     let mut part = ascend(input, part);
     if let Some(at) = input.state.signs.pop() {
@@ -317,7 +317,7 @@ fn operator<'n>(input: &mut Input<'n>) -> Read<Infix<Input<'n>, Part, Misread>> 
     }
 }
 
-/// A sum, up to what cannot belong to it.
+/// Reads a sum, up to the first character that cannot belong to it.
 fn whole(input: &mut Input) -> Read<Part> {
     expression(operand)
         .prefix(sign)
@@ -325,7 +325,7 @@ fn whole(input: &mut Input) -> Read<Part> {
         .parse_next(input)
 }
 
-/// The polynomial that `text` writes with these names, each of the value of its index.
+/// Reads `text` as a polynomial. Each of `names` stands for the value with its index.
 pub(super) fn read(text: &str, names: &[&str]) -> Read<Tape> {
     if text.len() > LONGEST {
         let message = format!("an expression of {} bytes: at most {LONGEST}", text.len());

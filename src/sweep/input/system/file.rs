@@ -11,7 +11,7 @@ use crate::sweep::input::nearest::did_you_mean;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::toml_reader::{Entry, SpecError, entries, parse};
 
-/// More parameters than this are refused.
+/// The most parameters of a system.
 const MOST_PARAMETERS: usize = 64;
 /// The longest name, in characters.
 const LONGEST_NAME: usize = 40;
@@ -19,14 +19,14 @@ const LONGEST_NAME: usize = 40;
 /// The keys of a system.
 const KEYS: [&str; 7] = ["title", "P", "Q", "B", "A", "parameters", "speed_axis"];
 
-/// An expression as it stands in a text.
+/// An expression as written in a text.
 struct Written {
     name: &'static str,
     text: String,
     /// Where the string stands, with its quotes.
     span: Range<usize>,
-    /// Where its first character stands; none where what is written is not what is meant, as with
-    /// escapes.
+    /// Where its first character stands; none where the written text differs from its value, as
+    /// with escapes.
     from: Option<usize>,
 }
 
@@ -36,7 +36,7 @@ impl Written {
         let literal = whole.get(entry.span.clone()).unwrap_or_default();
         let unquoted = literal.trim_matches(['"', '\'']);
         let inside = literal.find(unquoted).filter(|_| !unquoted.is_empty());
-        // A line end right after three quotes does not count.
+        // TOML ignores a line break right after three quotes.
         let skipped = unquoted.len().saturating_sub(text.len());
         let same = unquoted.ends_with(&text) && unquoted[..skipped].trim().is_empty();
         Ok(Self {
@@ -52,7 +52,7 @@ impl Written {
     fn read(&self, names: &[&str]) -> Result<Expression, SpecError> {
         let tape = expression::read(&self.text, names).map_err(|misread| {
             let span = match self.from {
-                // What is missing at the end is told at the closing quote.
+                // Something missing at the end is reported at the closing quote.
                 Some(from) if misread.place.is_empty() => {
                     from + misread.place.start..from + misread.place.end + 1
                 }
@@ -72,7 +72,7 @@ impl Written {
     }
 }
 
-/// What was read of a system until it is known to fit together.
+/// The parts of a system read so far, before they are known to be consistent.
 #[derive(Default)]
 struct Draft {
     title: String,
@@ -95,7 +95,7 @@ impl std::str::FromStr for SystemModel {
 }
 
 impl SystemModel {
-    /// Reads a system that is a table of the text `whole`.
+    /// Reads a system given as a table of the text `whole`.
     pub(in crate::sweep::input) fn of_table(table: &Entry, whole: &str) -> Result<Self, SpecError> {
         Self::of_entries(table.table()?, whole, Some(&table.key_span))
     }
@@ -203,7 +203,7 @@ impl Draft {
         Ok(model)
     }
 
-    /// Memory and latency are parameters of every system in feedback form.
+    /// Refuses the names of memory and latency, which every system in feedback form has.
     fn check_feedback_names(&self) -> Result<(), SpecError> {
         let taken = |own: &OwnParameter| matches!(&*own.name, "memory" | "latency");
         match self.parameters.iter().find(|(own, _)| taken(own)) {
@@ -232,7 +232,7 @@ fn check_degrees(
     Err(SpecError::at(place.clone(), message).help("write the system as P and Q"))
 }
 
-/// The name of a parameter can be one.
+/// Checks that a name is valid for a parameter.
 fn check_name(entry: &Entry) -> Result<(), SpecError> {
     let name = entry.key;
     let refuse = |message: String| Err(SpecError::at(entry.key_span.clone(), message));

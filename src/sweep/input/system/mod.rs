@@ -21,10 +21,10 @@
 //! unit = "rpm"
 //! ```
 //!
-//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on
-//!   their error
+//! - `expression`, `part`: read expressions; `tape`: evaluates them; `bounded`: numbers with bounds
+//!   on their error
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
-//! - [`parameter`]: a parameter of a system's own
+//! - [`parameter`]: a parameter of a system
 
 mod bounded;
 mod expression;
@@ -47,16 +47,16 @@ use crate::model::ModelError;
 /// A system whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SystemModel {
-    /// What it is, for pictures and maps; may be empty.
+    /// Title for pictures and maps; may be empty.
     pub title: String,
     form: Form,
     /// Its own parameters, in the order of the file.
     pub parameters: Vec<Arc<OwnParameter>>,
-    /// How pictures over its delay may show it.
+    /// The speed that pictures over the delay may show.
     pub speed_axis: Option<SpeedAxis>,
 }
 
-/// Two polynomials, each as it is written and as it is evaluated.
+/// Two polynomials, each as text and in the form for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
     /// P and Q.
@@ -71,7 +71,7 @@ struct Expression {
     tape: Tape,
 }
 
-/// A speed that goes with a delay that is a period.
+/// A speed derived from a delay that is a period.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpeedAxis {
     /// Its name.
@@ -80,7 +80,7 @@ pub struct SpeedAxis {
     pub unit: SpeedUnit,
 }
 
-/// A unit of speed, and so how it follows from the period τ.
+/// A unit of speed, which determines the speed for a period τ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeedUnit {
     /// Revolutions per minute, 60/τ with τ in seconds.
@@ -109,7 +109,7 @@ impl SpeedUnit {
         }
     }
 
-    /// The speed of which `period` > 0 is one revolution.
+    /// The speed at which one revolution takes `period` > 0.
     #[must_use]
     pub fn speed(self, period: f64) -> f64 {
         let turn = match self {
@@ -121,16 +121,16 @@ impl SpeedUnit {
     }
 }
 
-/// Values of what a system depends on, and room for its evaluation.
+/// The values on which a system depends, and scratch space for its evaluation.
 #[derive(Debug, Clone, Default)]
 pub struct Evaluation {
     /// The own parameters, in the order of [`SystemModel::parameters`].
     pub own: Vec<f64>,
     /// τ ≥ 0.
     pub tau: f64,
-    /// R, −1 < R < 1; of the feedback form alone.
+    /// R, −1 < R < 1; in feedback form only.
     pub memory: f64,
-    /// δ ≥ 0; of the feedback form alone.
+    /// δ ≥ 0; in feedback form only.
     pub latency: f64,
     values: Vec<f64>,
     stacks: Stacks,
@@ -164,26 +164,26 @@ impl From<Undefined> for ModelError {
 }
 
 impl SystemModel {
-    /// Whether it is given as B and A, so that memory and latency are parameters.
+    /// Whether the system is given as B and A; memory and latency are then parameters.
     #[must_use]
     pub fn is_feedback(&self) -> bool {
         matches!(self.form, Form::Feedback(_))
     }
 
-    /// Whether its polynomials depend on the delay: then there is no line of delays.
+    /// Whether the polynomials depend on the delay; there is then no line of delays.
     #[must_use]
     pub fn depends_on_delay(&self) -> bool {
         let tau = self.parameters.len();
         self.polynomials().any(|(_, of)| of.tape.uses(tau))
     }
 
-    /// The parameter of that name, by its index.
+    /// The index of the parameter with this name.
     #[must_use]
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|own| own.name == name)
     }
 
-    /// Its polynomials as they are written, with their names.
+    /// The polynomials as written, with their names.
     pub fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.polynomials().map(|(name, of)| (name, &*of.text))
     }
@@ -196,7 +196,7 @@ impl SystemModel {
         names.into_iter().zip(all)
     }
 
-    /// Every parameter at its default, without delay, memory and latency.
+    /// All parameters at their defaults, without delay, memory and latency.
     #[must_use]
     pub fn defaults(&self) -> Evaluation {
         Evaluation {
@@ -208,7 +208,7 @@ impl SystemModel {
     /// The system at a setting.
     ///
     /// # Errors
-    /// Where an expression has no finite value, or A is of no smaller degree than B.
+    /// Where an expression has no finite value, or the degree of A is not less than that of B.
     pub fn at(&self, at: &mut Evaluation) -> Result<System, Undefined> {
         at.values.clone_from(&at.own);
         at.values.push(at.tau);

@@ -1,4 +1,4 @@
-//! A parameter of a system's own.
+//! A parameter of a system.
 
 use crate::model::Shown;
 use crate::sweep::input::parameter::LARGEST;
@@ -10,7 +10,7 @@ pub struct OwnParameter {
     pub index: usize,
     /// The name, one word everywhere.
     pub name: String,
-    /// What it is; the name where the file does not say.
+    /// The meaning in words; the name where the file gives none.
     pub long_name: String,
     /// The value where none is given.
     pub default: f64,
@@ -22,11 +22,11 @@ pub struct OwnParameter {
     pub unit: String,
 }
 
-/// The range of a parameter where the file does not say.
+/// The range of a parameter for which the file gives none.
 pub(super) const WIDEST: [f64; 2] = [-LARGEST, LARGEST];
 
 impl OwnParameter {
-    /// The range allowed, in words.
+    /// The allowed range, in words.
     #[must_use]
     pub fn allowed(&self) -> String {
         match [self.minimum, self.maximum] {
@@ -46,7 +46,7 @@ impl OwnParameter {
     /// `value` if it is in range.
     ///
     /// # Errors
-    /// Names the parameter, the value and the range allowed.
+    /// Names the parameter, the value and the allowed range.
     pub fn check(&self, value: f64) -> Result<f64, String> {
         if (self.minimum..=self.maximum).contains(&value) {
             return Ok(value);

@@ -1,4 +1,4 @@
-//! Parts of an expression, and what becomes of them under its operations.
+//! Parts of an expression, and the operations on them.
 
 use std::ops::Range;
 
@@ -11,11 +11,11 @@ const LARGEST_EXPONENT: f64 = 64.0;
 /// Why an expression was not understood, and where in it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Misread {
-    /// The bytes of the expression that it is about; empty at its end.
+    /// The bytes of the expression in question; empty at its end.
     pub place: Range<usize>,
     pub message: String,
     pub help: Option<String>,
-    /// Nothing else can be meant.
+    /// Whether no other reading of the text is possible.
     pub certain: bool,
 }
 
@@ -41,10 +41,10 @@ pub(super) type Read<T> = Result<T, Misread>;
 #[derive(Debug, Clone)]
 pub(super) struct Part {
     pub ops: Vec<(Op, Range<usize>)>,
-    /// The largest degree in s; none where no s is in it.
+    /// The largest degree in s; none for a part without s.
     pub degree: Option<usize>,
     pub place: Range<usize>,
-    /// Its value, where it is a number as it is written.
+    /// Its value, for a literal number.
     pub number: Option<f64>,
 }
 
@@ -58,7 +58,7 @@ impl Part {
         }
     }
 
-    /// A polynomial also where no s is in it.
+    /// The part as a polynomial, with its degree, even without s.
     pub(super) fn lifted(mut self) -> (Self, usize) {
         if let Some(degree) = self.degree {
             return (self, degree);
@@ -68,7 +68,7 @@ impl Part {
         (self, 0)
     }
 
-    /// This operation on two parts.
+    /// Appends `other` and an operation on both.
     pub(super) fn with(mut self, other: Self, op: Op, degree: Option<usize>) -> Self {
         self.ops.extend(other.ops);
         self.place = self.place.start..other.place.end;
@@ -78,7 +78,7 @@ impl Part {
         self
     }
 
-    /// This operation on one part, which gives its `degree`.
+    /// Appends an operation on this part alone, with a result of `degree`.
     pub(super) fn then(mut self, op: Op, degree: Option<usize>) -> Self {
         self.ops.push((op, self.place.clone()));
         self.degree = degree;

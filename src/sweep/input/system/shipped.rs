@@ -1,9 +1,9 @@
-//! Systems that are part of the program, found by their names: the files of `sweeps/systems`.
+//! Systems that are part of the program, by name: the files of `sweeps/systems`.
 
 use super::SystemModel;
 use crate::sweep::input::nearest::did_you_mean;
 
-/// The names of all, with their files.
+/// All names, with their files.
 pub const SHIPPED: [(&str, &str); 8] = [
     (
         "letter",
@@ -33,26 +33,26 @@ pub const SHIPPED: [(&str, &str); 8] = [
     ),
 ];
 
-/// The file of the system of that name.
+/// The file of the system with this name.
 #[must_use]
 pub fn text_of(name: &str) -> Option<&'static str> {
     let found = SHIPPED.into_iter().find(|(known, _)| *known == name);
     found.map(|(_, text)| text)
 }
 
-/// The system of that name.
+/// The system with this name.
 #[must_use]
 pub fn system(name: &str) -> Option<SystemModel> {
     text_of(name)?.parse().ok()
 }
 
-/// The names of all, for messages.
+/// All names, for messages.
 #[must_use]
 pub fn names() -> String {
     SHIPPED.map(|(name, _)| name).join(", ")
 }
 
-/// What may have been meant by a name that none has, and what there is.
+/// A message about an unknown name: what may have been meant, and which names exist.
 #[must_use]
 pub fn meant(name: &str) -> String {
     let meant = did_you_mean(name, SHIPPED.map(|(known, _)| known));

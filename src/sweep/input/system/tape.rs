@@ -1,5 +1,5 @@
-//! An expression as a list of operations on two stacks, one of numbers and one of polynomials in s:
-//! evaluated at every setting, without an allocation once the stacks have grown.
+//! An expression as a list of operations on two stacks, one of numbers and one of polynomials in s.
+//! It is evaluated at every setting, without allocations once the stacks have grown.
 
 use std::ops::Range;
 
@@ -16,12 +16,12 @@ pub(super) enum Function {
     Cos,
 }
 
-/// One operation. Operands are taken from the ends of the stacks, the result is put there.
+/// One operation. Operands are popped from the stacks and the result is pushed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
-    /// A number as it is written.
+    /// A literal number.
     Number(f64),
-    /// The value of a name.
+    /// The value of a name, by index.
     Value(u8),
     Add,
     Subtract,
@@ -34,7 +34,7 @@ pub(super) enum Op {
     Larger,
     /// s.
     Variable,
-    /// A number as a polynomial.
+    /// Turns a number into a polynomial.
     Lift,
     AddPolynomials,
     SubtractPolynomials,
@@ -52,11 +52,11 @@ pub(super) enum Op {
 pub(super) struct Tape {
     ops: Vec<Op>,
     places: Vec<Range<usize>>,
-    /// No coefficient of a higher power can differ from 0.
+    /// An upper bound on the degree of the polynomial.
     degree: usize,
 }
 
-/// The stacks of evaluations, used again.
+/// The stacks of an evaluation, for reuse.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stacks {
     numbers: Vec<Bounded>,
@@ -82,7 +82,7 @@ impl Stacks {
         self.numbers.push(of(first));
     }
 
-    /// False where a product has too large a degree, which none has that was read.
+    /// False where a product has too large a degree, which the reader rules out.
     fn two_polynomials(
         &mut self,
         of: impl Fn(&Polynomial, &Polynomial) -> Option<Polynomial>,
@@ -100,7 +100,7 @@ impl Stacks {
         scaled.is_ok()
     }
 
-    /// False where there is no such number or polynomial.
+    /// Applies an operation; false where its result is not defined.
     fn apply(&mut self, op: Op, values: &[f64]) -> bool {
         match op {
             Op::Number(value) => self.numbers.push(Bounded::exact(value)),
@@ -158,12 +158,12 @@ impl Tape {
         }
     }
 
-    /// The largest degree that it can have.
+    /// An upper bound on the degree.
     pub(super) fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Whether the value of this index stands in it.
+    /// Whether the expression contains the value with this index.
     pub(super) fn uses(&self, index: usize) -> bool {
         self.ops
             .iter()
@@ -173,7 +173,7 @@ impl Tape {
     /// The polynomial at these values.
     ///
     /// # Errors
-    /// The place of what there is not, such as 1/0.
+    /// The place of an undefined operation, such as 1/0.
     pub(super) fn at(
         &self,
         values: &[f64],

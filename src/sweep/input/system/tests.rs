@@ -53,7 +53,7 @@ fn their_parameters_are_those_of_the_tables() {
     }
 }
 
-/// Texts, each with what is pointed at and what is said.
+/// Texts, each with the part that the error points at and its message.
 const MISFITS: &[(&str, Option<&str>, &str)] = &[
     ("", None, "a system needs its polynomials"),
     ("P = \"s\"", None, "P alone makes no system"),

@@ -17,7 +17,7 @@ fn quoted(text: &str) -> String {
 }
 
 impl OwnParameter {
-    /// All but its name as an inline table.
+    /// Everything but the name, as an inline table.
     fn to_toml(&self) -> String {
         format!(
             "{{ long_name = {}, default = {:?}, minimum = {:?}, maximum = {:?}, unit = {} }}",
@@ -38,7 +38,7 @@ impl SpeedAxis {
 }
 
 impl SystemModel {
-    /// What it is, with its polynomials, for people.
+    /// The title with the polynomials, for people.
     #[must_use]
     pub fn in_one_line(&self) -> String {
         let title = Some(&self.title).filter(|title| !title.is_empty());
@@ -50,7 +50,7 @@ impl SystemModel {
         title.map_or(texts.clone(), |title| format!("{title}: {texts}"))
     }
 
-    /// Its keys with their values, each on a line of its own but for `between`.
+    /// The keys with their values as text.
     fn pairs(&self) -> Vec<(&'static str, String)> {
         let mut pairs = Vec::new();
         if !self.title.is_empty() {
@@ -63,7 +63,7 @@ impl SystemModel {
         pairs
     }
 
-    /// The text of a system file that gives the same system.
+    /// The text of a system file for the same system.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let pairs = self.pairs().into_iter();
@@ -79,7 +79,7 @@ impl SystemModel {
         text
     }
 
-    /// The same on one line, as the value of a key.
+    /// The system on one line, as the value of a key.
     #[must_use]
     pub fn to_inline_table(&self) -> String {
         let mut pairs = self.pairs();

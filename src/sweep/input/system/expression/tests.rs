@@ -47,7 +47,7 @@ fn what_is_written_is_what_is_evaluated() {
     }
 }
 
-/// Each with the part that is pointed at.
+/// Texts, each with the part that the error points at.
 #[test]
 fn what_is_not_understood_is_told_in_its_place() {
     for (text, part, says) in [
@@ -93,7 +93,7 @@ fn what_is_not_understood_is_told_in_its_place() {
     assert!(error.help.unwrap().starts_with("did you mean `sqrt`?"));
 }
 
-/// However deep or long a text is, it is refused and nothing overflows.
+/// A text that is too deep or too long is refused, without overflow.
 #[test]
 fn long_texts_are_refused() {
     let many = |part: &str, n: usize| part.repeat(n);
@@ -128,7 +128,7 @@ fn what_has_no_value_is_told_in_its_place() {
     }
 }
 
-/// An expression as a tree, with its value by the rules of arithmetic: `read` knows nothing of it.
+/// An expression as a tree, evaluated by the rules of arithmetic, independently of `read`.
 #[derive(Debug, Clone)]
 enum Tree {
     Number(f64),
@@ -140,7 +140,7 @@ enum Tree {
 }
 
 impl Tree {
-    /// As text, with every parenthesis or with as few as precedence allows.
+    /// The tree as text, with every parenthesis or with as few as precedence allows.
     fn print(&self, all: bool) -> String {
         let inside = |of: &Self, wrapped: bool| match wrapped {
             true => format!("({})", of.print(all)),
@@ -185,7 +185,7 @@ impl Tree {
         }
     }
 
-    /// The value at `s` and the same with no cancellation.
+    /// The value at `s`, and the same without cancellation.
     fn value(&self, s: f64, values: &[f64]) -> (f64, f64) {
         let of = |tree: &Self| tree.value(s, values);
         match self {
@@ -227,7 +227,7 @@ fn tree() -> impl Strategy<Value = Tree> {
 }
 
 proptest! {
-    /// What is printed is read as the same polynomial, however many parentheses it has.
+    /// A printed tree is read as the same polynomial, however many parentheses it has.
     #[test]
     fn printed_trees_are_read_as_they_are(
         tree in tree().prop_filter("a small degree", |t| t.degree() <= MOST_DEGREE),
@@ -249,7 +249,7 @@ proptest! {
             let value = |of: &[f64]| of.iter().rev().fold(0.0, |sum, c| sum * s + c);
             let apart = (value(found.coefficients()) - exact).abs();
             prop_assert!(apart <= 1e-12 * size + 1e-300, "{text}: {apart:e} of {size:e}");
-            // The bound is no smaller than what is lost, and not much larger.
+            // The bound is no smaller than the actual error, and not much larger.
             let bound: f64 = found.errors().iter().rev().fold(0.0, |sum, e| sum * s.abs() + e);
             prop_assert!(bound <= 1e-11 * size + 1e-290, "{text}: {bound:e} of {size:e}");
         }
