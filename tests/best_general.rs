@@ -18,6 +18,7 @@ use serde_json::Value;
 use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
 use slipmap::linear::general::{Polynomial, System};
 use slipmap::model::Groups;
+use slipmap::store::MapFile;
 use walk::Walk;
 
 /// The letter's own system is searched by its closed form and as any other: the same regions, the
@@ -135,7 +136,7 @@ impl Problem {
 #[test]
 fn nothing_is_better_by_a_walk() {
     let mut chance = Chance(asked("SLIPMAP_SEED", 41));
-    let cases = asked("SLIPMAP_CASES", 24);
+    let cases = asked("SLIPMAP_CASES", 16);
     let (mut certified, mut places, mut stable) = (0, 0, 0);
     for _ in 0..cases {
         let problem = Problem::by_chance(&mut chance);
@@ -269,12 +270,59 @@ fn the_program_searches_control_with_memory() {
     assert!(number(&lags["best"]["abscissa"]) < 0.0, "{lags}");
 }
 
+/// A sweep over the memory finds in each plane what the command line finds.
+#[test]
+fn a_sweep_finds_the_same_optima() {
+    let sweep = "\
+fields = [\"n_unstable\"]
+best = true
+[axes]
+memory = [0, 0.3]
+alpha_v = { from = -1, to = 0.5, points = 4 }
+tau = { from = 0, to = 12, points = 5 }
+[fixed]
+mu_prime = -0.5
+";
+    let folder = Folder::with(&[("memory.toml", sweep)]);
+    let run = folder.run(&["run", "memory.toml", "-o", "memory.h5"]);
+    assert_eq!(run.status.code(), Some(0), "{}", err(&run));
+    let map = MapFile::open(&folder.path().join("memory.h5")).expect("a map");
+    let found = map.best().expect("best settings");
+    assert_eq!(found.len(), 2);
+    for (memory, of) in ["0", "0.3"].into_iter().zip(&found) {
+        let told = json(
+            &folder,
+            &[
+                "best",
+                "--mu-prime",
+                "-0.5",
+                "--memory",
+                memory,
+                "--alpha-from",
+                "-1",
+                "--alpha-to",
+                "0.5",
+                "--tau-from",
+                "0",
+                "--tau-to",
+                "12",
+                "--json",
+            ],
+        );
+        let best = &told["best"];
+        assert_eq!(number(&best["alpha"]), of.gain);
+        assert_eq!(number(&best["tau"]), of.tau);
+        assert_eq!(number(&best["abscissa"]), of.abscissa);
+        assert!(of.abscissa < 0.0);
+    }
+}
+
 #[test]
 fn what_is_wrong_with_a_search_is_told() {
     let folder = Folder::new();
     for (args, told) in [
         ("best --system pd", "--search is not given"),
-        ("best --system pd --search kp", "did you mean k_p"),
+        ("best --system pd --search kp", "did you mean `k_p`"),
         (
             "best --system pd --search k_p --set k_p=1",
             "k_p is given, which is searched",

@@ -458,7 +458,6 @@ fn what_cannot_be_had_is_told_at_its_key() {
             "mu_prime = -0.1\nmemory = 0.2\n",
             "",
         ),
-        ("best = true\n", "mu_prime = -0.1\nload_lag = 0.2\n", ""),
         (
             "fields = [\"outcome\"]\n",
             "v0 = 0.1\nsensor_lag = 0.2\n",

@@ -208,18 +208,21 @@ impl Family for General<'_> {
             return f64::INFINITY;
         };
         let (tau, system) = (place.tau, counter.system());
-        if tau > 0.0 {
-            if system.class() == Class::Infinite {
-                return f64::INFINITY;
-            }
-            // No root is right of where they accumulate.
-            if let Some(beside) = beside_accumulation(system, tau)
-                && counter.right_of(tau, beside) == RightOf::Roots(0)
-            {
-                return system.essential_abscissa(tau);
-            }
+        if tau > 0.0 && system.class() == Class::Infinite {
+            return f64::INFINITY;
         }
-        rightmost_abscissa(&counter, finder, tau)
+        let found = rightmost_abscissa(&counter, finder, tau);
+        if found.is_finite() || tau == 0.0 {
+            return found;
+        }
+        // It may be that no root lies right of where they accumulate. This is asked last: so near
+        // to that line a count takes long.
+        let beside = beside_accumulation(system, tau);
+        let none = |line| counter.right_of(tau, line) == RightOf::Roots(0);
+        match beside.filter(|&line| none(line)) {
+            Some(_) => system.essential_abscissa(tau),
+            None => f64::INFINITY,
+        }
     }
 
     /// The gains between which the number of crossings changes, halved until they are one, and 0,

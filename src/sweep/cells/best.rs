@@ -144,7 +144,8 @@ pub fn best_settings(
 ) -> Result<BestSettings, ModelError> {
     let scales = Scales::of(setting, gain)?;
     let search = scales.search(setting, gain, ranges)?;
-    let found = if of_letter(setting) {
+    let of_letter = !setting.has_state() && beyond_letter(setting).is_none();
+    let found = if of_letter {
         best::best(&search)
     } else {
         scales.beyond_letter(setting, &search)?
@@ -152,11 +153,10 @@ pub fn best_settings(
     Ok(scales.settings(&found, ranges))
 }
 
-/// Whether the feedback has no memory, no latency and no lags, and friction no state, whatever the
-/// gains are.
-fn of_letter(setting: &Setting) -> bool {
-    let beyond = |&parameter: &Parameter| setting.get(parameter) != 0.0;
-    !setting.has_state() && !Parameter::BEYOND_LETTER.iter().any(beyond)
+/// The first parameter by which the feedback is beyond the letter's own, whatever the gains are.
+fn beyond_letter(setting: &Setting) -> Option<Parameter> {
+    let mut all = Parameter::BEYOND_LETTER.into_iter();
+    all.find(|&parameter| setting.get(parameter) != 0.0)
 }
 
 /// The best setting under joint errors of gain, delay and μ′.
@@ -185,10 +185,16 @@ pub fn robust_setting(
     spread: f64,
 ) -> Result<(BestSettings, Option<RobustSetting>), ModelError> {
     let scales = Scales::of(setting, gain)?;
-    setting.check_of_letter(
-        &Parameter::BEYOND_LETTER,
-        "0 where a robust setting is looked for",
-    )?;
+    let allowed = "0 where a robust setting is searched for";
+    setting.check_of_letter(&[], allowed)?;
+    // Also where the gains of `setting` are 0: they are searched.
+    if let Some(parameter) = beyond_letter(setting) {
+        return Err(ModelError {
+            parameter: parameter.name(),
+            value: setting.get(parameter),
+            allowed,
+        });
+    }
     let search = scales.search(setting, gain, ranges)?;
     let found = best::best(&search);
     let robust = best::robust(&search, &found, spread).map(|robust| {
