@@ -312,6 +312,26 @@ fn what_there_is_not_is_null_and_has_its_reason() {
     }
     assert_eq!(infinite["reason"], "infinite");
     assert_eq!(infinite["stable"], false);
+    // Without delay it is 3 s² + s + 1.
+    let without = json(&folder, &["--system", "infinite.toml", "--tau", "0"]);
+    assert_eq!(without["n_unstable"], 0);
+    assert_eq!(without["reason"], Value::Null);
+    near(&without["abscissa"], -1.0 / 6.0, 1e-12, "without delay");
+    let sweep = "system = \"infinite.toml\"\nfields = [\"reason\"]\n[axes]\ntau = [0, 1]\n";
+    std::fs::write(folder.path().join("map.toml"), sweep).unwrap();
+    expect(&folder.run(&["run", "map.toml", "-o", "map.h5"]), 0, "");
+    let table = folder.run(&["export", "map.h5", "-o", "map.csv"]);
+    expect(&table, 0, "");
+    let table = std::fs::read_to_string(folder.path().join("map.csv")).unwrap();
+    let reasons: Vec<&str> = table.lines().filter(|l| !l.starts_with('#')).collect();
+    assert!(
+        reasons[1].starts_with("0,") && !reasons[1].contains("infinite"),
+        "{table}"
+    );
+    assert!(
+        reasons[2].starts_with("1,") && reasons[2].contains("infinite"),
+        "{table}"
+    );
     for (file, reason) in [
         ("limit.toml", "neutral-limit"),
         ("origin.toml", "root-at-origin"),

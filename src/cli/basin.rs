@@ -46,7 +46,7 @@ pub(super) struct Args {
     cell: CellArgs,
     #[command(flatten)]
     file: SettingArgs,
-    /// Which starts there are [default: state, or those of --map]
+    /// Kind of starts [default: state, or those of --map]
     #[arg(long, value_enum)]
     over: Option<OverName>,
     /// How many, a power of two from 64 to 1048576 [default: 4096]
@@ -64,7 +64,7 @@ pub(super) struct Args {
     /// Largest elongation of the spring at t = 0 and before
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     a0_to: Option<f64>,
-    /// Until how long after switch-on the outcome is looked for [default: 1000 √(M/κ)]
+    /// Time after switch-on until which motions are followed [default: 1000 √(M/κ)]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     horizon: Option<f64>,
     /// Write all starts with their outcomes, as text

@@ -31,7 +31,7 @@ pub(super) struct Args {
     /// Write the map here instead
     #[arg(short, long, value_name = "MAP.h5")]
     output: Option<PathBuf>,
-    /// Put together what there is: cells that are missing have fill values, and the shards stay
+    /// Merge the available pieces: missing cells get fill values, and the shards stay
     #[arg(long)]
     partial: bool,
     /// Replace a map that is already there

@@ -46,8 +46,8 @@ pub(super) struct Args {
     /// Threads to plan a sweep for [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
-    /// The most memory to plan for, such as 500MB or 2GiB: fewer threads compute where so many
-    /// would take more
+    /// The most memory to plan for, such as 500MB or 2GiB: fewer threads are used if they would
+    /// take more
     #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
     memory: u64,
     /// One JSON object on standard output; bytes and seconds

@@ -39,15 +39,15 @@ pub(super) struct Args {
     /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// The most memory to take, such as 500MB or 2GiB: fewer threads compute where so many would
-    /// take more
+    /// The most memory to take, such as 500MB or 2GiB: fewer threads are used if they would take
+    /// more
     #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
     memory: u64,
     /// Start over, replacing a map that is already there and dropping what an earlier run, or this
     /// shard, computed
     #[arg(long)]
     fresh: bool,
-    /// Save what is computed every so many seconds
+    /// Seconds between two saves of computed pieces
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = parse_seconds)]
     save_every: Duration,
 }

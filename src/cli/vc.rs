@@ -34,7 +34,7 @@ pub(super) struct Args {
     cell: CellArgs,
     #[command(flatten)]
     file: SettingArgs,
-    /// Which question is asked
+    /// Protocol of the search
     #[arg(long, value_enum, default_value_t = ProtocolName::Follow)]
     protocol: ProtocolName,
     /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol

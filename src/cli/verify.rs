@@ -25,7 +25,7 @@ pub(super) struct Args {
     /// The map, or the trace of a motion
     #[arg(value_name = "FILE.h5")]
     map: PathBuf,
-    /// Cells of a map at which second methods look, spread over the map
+    /// Cells of a map to check by a second method, spread over the map
     #[arg(long, value_name = "N", default_value_t = 100,
           value_parser = clap::value_parser!(u64).range(..=MOST))]
     cells: u64,

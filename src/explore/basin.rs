@@ -84,7 +84,7 @@ pub struct BasinShare {
     /// 3.1 starts of all at least where fewer than five differ from the others. 0 where sliding is
     /// linearly unstable.
     pub basin_share_error: Option<f64>,
-    /// The share if all that are undecided came to slide.
+    /// The share if all undecided starts ended in sliding.
     pub basin_share_upper: Option<f64>,
     /// In which the share lies with 95 % confidence, undecided starts taken either way.
     pub interval: Option<[f64; 2]>,
@@ -103,7 +103,7 @@ pub struct BasinShare {
     pub a0: Option<[f64; 2]>,
     /// The period of the uncontrolled cycle; null over states.
     pub period: Option<f64>,
-    /// Until how long after switch-on outcomes were looked for.
+    /// Time after switch-on until which motions were followed.
     pub horizon: f64,
     /// Shares of all outcomes.
     pub outcomes: Vec<OutcomeShare>,

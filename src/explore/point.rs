@@ -8,7 +8,7 @@ use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
 use crate::sweep::{LinearModel, Parameter, Setting};
 
-/// What there is to know of a point, in the units of its setting.
+/// Linear stability at a point, in the units of its setting.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Point {

@@ -19,7 +19,7 @@ use crate::sweep::LinearModel;
 /// left out.
 const MOST_INTERVALS: usize = 100_000;
 
-/// What there is to know of the stability of a linear model at a delay.
+/// Stability of a linear model at a delay.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Stability {
@@ -30,8 +30,8 @@ pub struct Stability {
     pub stable: bool,
     /// Whether that is within rounding of a boundary.
     pub marginal: bool,
-    /// Why the point is not like others: `root-at-origin`, `root-on-axis`, `infinite`,
-    /// `neutral-limit`, `no-rightmost-root`, `degree-unknown` or `refused`; null where it is.
+    /// Why the point is special: `root-at-origin`, `root-on-axis`, `infinite`, `neutral-limit`,
+    /// `no-rightmost-root`, `degree-unknown` or `refused`; null where it is not.
     pub reason: Option<&'static str>,
     /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
     /// one is null where it has none.
@@ -61,7 +61,7 @@ pub struct Stability {
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
-    /// Re λ of the line right of which roots were to be counted; null where none was asked for.
+    /// Re λ of the line to the right of which roots are counted; null where none was requested.
     pub line: Option<f64>,
     /// The number of roots right of that line; null where none was asked for, where a root lies
     /// within rounding of it, and where there are infinitely many: it is less than

@@ -10,7 +10,7 @@ use crate::linear::general::Class;
 use crate::sweep::LinearModel;
 use crate::sweep::input::system::{Evaluation, SystemModel, Undefined};
 
-/// What there is to know of a point of a system.
+/// Linear stability of a system at a point.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct SystemPoint {
@@ -24,13 +24,13 @@ pub struct SystemPoint {
     pub memory: Option<f64>,
     /// δ; null for P and Q, which have no latency.
     pub latency: Option<f64>,
-    /// Whether all delays are known at once. Where P or Q depends on the delay they are not: then
-    /// `n_unstable` and the roots are all that is told, `stable_delays` and `crossings` are empty
-    /// and what else is said of other delays is null.
+    /// Whether all delays are covered. They are not where P or Q depends on the delay: then only
+    /// `n_unstable` and the roots are given, `stable_delays` and `crossings` are empty, and other
+    /// values about other delays are null.
     pub line_of_delays: bool,
-    /// The largest further latency of the feedback, counted from none, everything else being fixed;
-    /// 0 where the setting without latency is not stable. Null where no latency spoils it, where it
-    /// is not known, and for P and Q, which have no latency.
+    /// The largest latency of the feedback, counted from none, at which the setting stays stable; 0
+    /// where it is unstable without latency. Null where it is infinite or unknown, and for P and Q,
+    /// which have no latency.
     pub latency_margin: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]

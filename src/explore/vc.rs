@@ -21,14 +21,14 @@ pub struct CriticalVelocity {
     /// v_c; null where `outcome` says why there is none: stick-slip persists up to the largest v0
     /// that is tried, or the block lifts off.
     pub vc: Option<f64>,
-    /// A lower bound of v_c, below the ends that all searches came to by a margin; v_c where that
+    /// A lower bound of v_c, by a margin below the ends found by all searches; v_c itself where it
     /// is decided. Null where lift-off comes before any stick-slip.
     pub vc_lower: Option<f64>,
     /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
     /// decided. Null where neither was seen up to the end of the range, or where slow
     /// searches disagree whether it lifts off.
     pub vc_upper: Option<f64>,
-    /// Which question it answers: `follow` or `switch-on`.
+    /// The protocol: `follow` or `switch-on`.
     pub protocol: &'static str,
     /// How stick-slip ends there.
     pub outcome: &'static str,

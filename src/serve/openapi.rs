@@ -23,7 +23,7 @@ const ADDRESS: &str = "/api/v1/openapi.json";
         title = "slipmap",
         description = "What the page of `slipmap serve` asks.\n\n\
             Requests that compute are texts as in sweep and case files, `application/toml`. \
-            Numbers that there are not are null, infinities among them. What cannot be answered is \
+            Missing numbers and infinities are null. What cannot be answered is \
             a problem, `application/problem+json`.\n\n\
             Answers with many numbers are bytes: the length of a head as u32, the head in JSON, \
             padding to a multiple of 8, then arrays, each padded likewise; all numbers \

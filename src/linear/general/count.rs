@@ -1,6 +1,7 @@
 //! The count of unstable roots at a delay, from the crossings of its line.
 
 use super::line::{DelayLine, Passage};
+use super::reason::Reason;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::Crossing;
 
@@ -16,6 +17,15 @@ impl DelayLine {
             Some(passage) if passage.tau < tau => change + i64::from(passage.change),
             _ => change,
         }
+    }
+
+    /// Why the delay `tau` ≥ 0 is special, if it is. Without delay D is a polynomial: it has finitely
+    /// many roots.
+    #[inline]
+    #[must_use]
+    pub fn reason_at(&self, tau: f64) -> Option<Reason> {
+        let finite = |&reason: &Reason| tau > 0.0 || reason != Reason::Infinite;
+        self.reason.filter(finite)
     }
 
     /// (5), with whether `tau` ≥ 0 lies within rounding of a change.

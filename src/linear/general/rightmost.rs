@@ -57,7 +57,7 @@ impl Spectrum {
             essential_abscissa,
             margin: f64::NAN,
             certified: false,
-            reason: line.reason,
+            reason: line.reason_at(tau),
             missing: None,
         };
         if line.uncounted && tau > 0.0 {

@@ -17,7 +17,7 @@ pub(super) struct WindowHead {
     pub complete: bool,
     /// The part that was, 0 to 1.
     pub progress: f64,
-    /// Another one when more cells are there.
+    /// Changes when cells are added.
     pub version: u64,
     /// The field.
     pub field: &'static str,
@@ -67,7 +67,7 @@ pub(super) struct WindowAt {
 /// What curves say before their numbers, x and y vertex by vertex.
 #[derive(Serialize, ToSchema)]
 pub(super) struct CurvesHead {
-    /// Another one when more cells are there.
+    /// Changes when cells are added.
     pub version: u64,
     /// The curves; none where they are of other planes.
     pub curves: Vec<CurveHead>,
@@ -161,7 +161,7 @@ pub(super) struct MapAxis {
     pub values: Option<Vec<f64>>,
 }
 
-/// What there is to know of a map besides its cells.
+/// Description of a map, without its cells.
 #[derive(Serialize, ToSchema)]
 pub(super) struct MapDescription<T> {
     /// 16 hexadecimal digits, the same for the same name.
@@ -184,7 +184,7 @@ pub(super) struct MapTold {
     pub cells: u64,
     /// How many of them are there.
     pub cells_done: u64,
-    /// Another one when more cells are there.
+    /// Changes when cells are added.
     pub version: u64,
     /// Its axes, the slowest one first.
     pub axes: Vec<MapAxis>,

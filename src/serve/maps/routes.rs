@@ -48,7 +48,7 @@ enum NoMap {
     /// There is no map of this id
     #[response(status = 404, content_type = "application/problem+json")]
     None(Problem),
-    /// The map has not got what is asked for
+    /// The map lacks what was requested
     #[response(status = 422, content_type = "application/problem+json")]
     Unprocessable(Problem),
     /// The map cannot be read
@@ -116,7 +116,7 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
     axum::Json(maps.list.all().await)
 }
 
-/// What there is to know of a map besides its cells
+/// Description of a map, without its cells
 #[utoipa::path(
     get,
     path = "/api/v1/maps/{id}",

@@ -228,7 +228,8 @@ impl GeneralColumns {
             return;
         }
         // Every map has the reason, and on most lines it is the same in all cells.
-        if !numbers && !self.no_rightmost.contains(&true) {
+        let same = self.crossings.reason_at(line.delays.values()[0]) == self.crossings.reason;
+        if !numbers && same && !self.no_rightmost.contains(&true) {
             let reason = self.crossings.reason.map_or(0, Reason::number);
             let len = line.delays.values().len();
             for column in buffers.kinds.iter_mut().filter(|c| wanted(c.field)) {
@@ -239,7 +240,7 @@ impl GeneralColumns {
         for (i, &tau) in line.delays.values().iter().enumerate() {
             let essential = line.system.essential_abscissa(tau / line.time_unit);
             let accumulate = self.no_rightmost[i].then_some(Reason::NoRightmostRoot);
-            let reason = self.crossings.reason.or(accumulate);
+            let reason = self.crossings.reason_at(tau).or(accumulate);
             buffers.put(line.places.of(i), |field| match field.source() {
                 Source::Linear(OfLinear::Reason) => {
                     Some(reason.map_or(0.0, |reason| f64::from(reason.number())))
