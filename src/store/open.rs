@@ -12,7 +12,9 @@ use hdf5::plist::dataset_create::Layout;
 use hdf5::{Dataset, File, Group};
 use hdf5_sys::h5::{H5_index_t, H5_iter_order_t};
 use hdf5_sys::h5i::hid_t;
-use hdf5_sys::h5l::{H5L_info_t, H5L_info1_t, H5L_type_t, H5Lget_info1, H5Literate, H5Lunregister};
+#[allow(deprecated, reason = "libraries before 1.12 have no other")]
+use hdf5_sys::h5l::H5Lget_info1;
+use hdf5_sys::h5l::{H5L_info_t, H5L_info1_t, H5L_type_t, H5Literate, H5Lunregister};
 use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_filter2, H5Pget_nfilters};
 use hdf5_sys::h5z::{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE};
 
