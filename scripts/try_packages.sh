@@ -59,7 +59,7 @@ use() {
 slipmap --version
 # The libraries of glibc, and nothing else.
 libraries=$(ldd "$(command -v slipmap)")
-! grep -Ev "linux-(vdso|gate)|ld-linux|lib(c|m|gcc_s|dl|pthread|rt)\.so" <<<"$libraries"
+if grep -Ev "linux-(vdso|gate)|ld-linux|lib(c|m|gcc_s|dl|pthread|rt)\.so" <<<"$libraries"; then exit 1; fi
 slipmap run --quiet "$sweeps/fig2a.toml"
 slipmap info fig2a.h5
 slipmap verify fig2a.h5
