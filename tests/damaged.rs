@@ -339,7 +339,10 @@ fn chunks_of_other_dimensions_are_refused() {
     use hdf5::types::FixedUnicode;
     let folder = Folder::new();
     let path = folder.path().join("map.h5");
-    let file = hdf5::File::create(&path).unwrap();
+    // In the oldest format: libraries differ in what they write by themselves.
+    let mut with = hdf5::FileBuilder::new();
+    with.with_fapl(|access| access.libver_earliest());
+    let file = with.create(&path).unwrap();
     let put_text = |at: &hdf5::Location, name: &str, text: &str| {
         let attribute = at.new_attr::<FixedUnicode<4>>().create(name).unwrap();
         let text: FixedUnicode<4> = text.parse().unwrap();
@@ -373,5 +376,11 @@ fn chunks_of_other_dimensions_are_refused() {
     fs::write(&path, bytes).unwrap();
     let (end, said) = run(&folder, &["info", "map.h5"]);
     assert_eq!(end, End::Code(2), "{said}");
-    assert!(said.contains("another number of dimensions"), "{said}");
+    // Newer libraries refuse it themselves.
+    let why = [
+        "another number of dimensions",
+        "number of dimensions cannot be zero",
+    ];
+    let said = said.replace("\n  │ ", " ");
+    assert!(why.iter().any(|why| said.contains(why)), "{said}");
 }

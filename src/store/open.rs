@@ -12,8 +12,11 @@ use hdf5::plist::dataset_create::Layout;
 use hdf5::{Dataset, File, Group};
 use hdf5_sys::h5::{H5_index_t, H5_iter_order_t};
 use hdf5_sys::h5i::hid_t;
-use hdf5_sys::h5l::{H5L_info_t, H5L_info1_t, H5L_type_t, H5Lget_info1, H5Literate, H5Lunregister};
+#[allow(deprecated, reason = "libraries before 1.12 have no other")]
+use hdf5_sys::h5l::H5Lget_info1;
+use hdf5_sys::h5l::{H5L_info_t, H5L_info1_t, H5L_type_t, H5Literate, H5Lunregister};
 use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_filter2, H5Pget_nfilters};
+use hdf5_sys::h5pl::{H5PLremove, H5PLsize};
 use hdf5_sys::h5z::{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE};
 
 use super::error::StoreError;
@@ -38,11 +41,22 @@ unsafe extern "C" {
 static CONFINED: LazyLock<bool> = LazyLock::new(|| {
     hdf5::sync::sync(|| {
         // SAFETY: both functions take only numbers; the calls run under the library's lock.
-        unsafe {
+        let kinds = unsafe {
             H5PLset_loading_state(0) >= 0 && H5Lunregister(H5L_type_t::H5L_TYPE_EXTERNAL) >= 0
-        }
+        };
+        kinds && no_plugin_is_found()
     })
 });
+
+/// Leaves no folder in which plugins are looked for: newer libraries load all that are there where
+/// a file cannot be opened, whatever kinds may be loaded.
+fn no_plugin_is_found() -> bool {
+    let mut folders = 0;
+    // SAFETY: the pointer is to a number that lives; the caller holds the library's lock.
+    let counted = unsafe { H5PLsize(&raw mut folders) } >= 0;
+    // SAFETY: the call takes a number alone, and there are still folders.
+    counted && (0..folders).all(|_| unsafe { H5PLremove(0) } >= 0)
+}
 
 /// Whether the file begins with the signature of HDF5.
 fn begins_as_hdf5(path: &Path) -> bool {

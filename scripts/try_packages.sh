@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# Tries the packages that scripts/release.sh left in target/release-files, each in a fresh Debian 12 with nothing added:
+#
+#   scripts/try_packages.sh [deb] [tarball]      both unless one is named
+#
+# The .deb is installed by dpkg, the tarball unpacked. An ordinary user without a network then runs a shipped sweep, looks at
+# the map, draws it, verifies it and asks for a point. At last the .deb is removed, and nothing may be left of it.
+# Needs root on Debian or Ubuntu, debootstrap (it is installed where it is missing), Debian's mirror, and some minutes.
+# scripts/test.sh does not run it.
+set -euo pipefail
+
+SLIPMAP_SETUP=cargo
+# shellcheck source=scripts/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$SLIPMAP_ROOT"
+
+wanted=("$@")
+[ ${#wanted[@]} -gt 0 ] || wanted=(deb tarball)
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+files=target/release-files
+folder=$SLIPMAP_ROOT/target/try-packages
+fresh=$folder/bookworm.tar
+root=$folder/root
+
+[ "$(id -u)" = 0 ] || die "a root of its own needs root"
+have debootstrap || { have apt-get && apt_install debootstrap; } || die "debootstrap is not here and cannot be installed"
+(cd "$files" && sha256sum --strict --check SHA256SUMS >&2) || die "run scripts/release.sh first"
+mkdir -p "$folder"
+trap 'rm -rf "$root"' EXIT
+
+# What debootstrap made once is kept as an archive: each package gets a root that no other has touched.
+fresh_root() {
+    rm -rf "$root"
+    if [ ! -e "$fresh" ]; then
+        say "making a Debian 12"
+        debootstrap --variant=minbase bookworm "$root" >"$folder/debootstrap.log" || die "debootstrap failed: $folder/debootstrap.log"
+        tar -C "$root" -cf "$fresh.part" .
+        mv "$fresh.part" "$fresh"
+        rm -rf "$root"
+    fi
+    mkdir "$root"
+    tar -C "$root" -xpf "$fresh"
+}
+
+# inside USER COMMANDS: they run in the root, each printed first, with its own /proc and without a network.
+inside() {
+    # shellcheck disable=SC2016 # for the shell within
+    unshare --mount --net --pid --fork sh -c \
+        'mount -t proc proc "$1/proc" && exec chroot --userspec="$2" "$1" /usr/bin/env -i HOME=/tmp/user \
+            PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin bash -euxo pipefail -c "$3"' sh "$root" "$1" "$2"
+}
+
+# use SWEEPS: a user's first minutes with the program and the sweeps in that folder.
+use() {
+    mkdir -m 777 "$root/tmp/user"
+    # shellcheck disable=SC2016 # for the shell within
+    inside 1000:1000 "sweeps=$1
+"'cd /tmp/user
+slipmap --version
+# The libraries of glibc, and nothing else.
+libraries=$(ldd "$(command -v slipmap)")
+if grep -Ev "linux-(vdso|gate)|ld-linux|lib(c|m|gcc_s|dl|pthread|rt)\.so" <<<"$libraries"; then exit 1; fi
+slipmap run --quiet "$sweeps/fig2a.toml"
+slipmap info fig2a.h5
+slipmap verify fig2a.h5
+for kind in png svg pdf; do slipmap plot fig2a.h5 -o "again.$kind"; done
+for picture in fig2a.png again.png; do [ "$(head -c 4 $picture | tail -c 3)" = PNG ]; done
+slipmap point --mu-prime=-0.3 --alpha-v=-0.5 --tau 4
+slipmap point --system "$sweeps/systems/turning.toml" --set width=0.1 --tau 8
+slipmap simulate --quiet "$sweeps/fig3a.toml"
+slipmap info fig3a.h5
+[ "$(head -c 4 fig3a.png | tail -c 3)" = PNG ]
+ls -l'
+}
+
+# texts FILE…: they are there, and not empty.
+texts() {
+    local file
+    for file in "$@"; do
+        [ -s "$root$file" ] || die "$file is missing"
+    done
+}
+
+try_deb() {
+    local doc=/usr/share/doc/slipmap pages before
+    fresh_root
+    before=$(cd "$root" && find . -xdev | grep -Ev '^\./(tmp|proc|var/(lib/dpkg|log))' | sort)
+    cp "$files/slipmap_$version"-*.deb "$root/tmp/slipmap.deb"
+    inside 0:0 'dpkg -i /tmp/slipmap.deb; dpkg --verify slipmap'
+    texts /usr/share/bash-completion/completions/slipmap /usr/share/zsh/vendor-completions/_slipmap \
+        /usr/share/fish/vendor_completions.d/slipmap.fish $doc/copyright
+    grep -q 'The HDF Group' "$root$doc/copyright" || die "the licence of libhdf5 is missing"
+    pages=$(find "$root/usr/share/man/man1" -name 'slipmap*.1.gz' | wc -l)
+    [ "$pages" -ge 10 ] || die "$pages manual pages"
+    use $doc/sweeps
+    rm -r "$root/tmp/user"
+    inside 0:0 'dpkg -r slipmap'
+    diff <(echo "$before") <(cd "$root" && find . -xdev | grep -Ev '^\./(tmp|proc|var/(lib/dpkg|log))' | sort) ||
+        die "the package leaves these behind"
+}
+
+try_tarball() {
+    local name
+    name=$(cd "$files" && echo "slipmap-$version"-*.tar.gz)
+    fresh_root
+    cp "$files/$name" "$root/tmp/"
+    name=${name%.tar.gz}
+    inside 0:0 "tar -C /opt -xzf /tmp/$name.tar.gz; ln -s /opt/$name/slipmap /usr/local/bin/"
+    texts /opt/"$name"/{texts/slipmap.bash,texts/_slipmap,texts/slipmap.fish,texts/man/slipmap.1,LICENSE-MIT,LICENSE-APACHE}
+    grep -q 'The HDF Group' "$root/opt/$name/LICENSES-OF-OTHERS" || die "the licence of libhdf5 is missing"
+    use "/opt/$name/sweeps"
+}
+
+for package in "${wanted[@]}"; do
+    case $package in
+    deb | tarball) "try_$package" ;;
+    *) die "unknown package $package: deb or tarball" ;;
+    esac
+    say "$package: good"
+done
