@@ -3,7 +3,8 @@
 #
 #   scripts/figures_of_merit.sh [--peers] [--browser] [--short]
 #
-#   --peers     also the crate differential-equations and JiTCDDE (benches/peers/run.sh)
+#   --peers     also the crate differential-equations and JiTCDDE (benches/peers/run.sh), and charts by Python packages and
+#               numpy (benches/peers/lobes.sh)
 #   --browser   also the page in a headless browser beside plotly.js and h5web (scripts/browser.sh bench --peers)
 #   --short     as little of each as shows that it works: its figures mean nothing
 #
@@ -37,12 +38,13 @@ kept() {
     "$@" 2>&1 | tee "$folder/$name.txt"
 }
 
-for bench in throughput roots margins motion critical; do
+for bench in throughput roots general margins motion critical; do
     # The features are words of their own, or nothing at all.
     # shellcheck disable=SC2086
     kept "$bench" cargo bench --locked $SLIPMAP_CARGO_FEATURES --bench "$bench"
 done
 [ -z "$peers" ] || kept peers benches/peers/run.sh ${short:+1}
+[ -z "$peers" ] || kept lobes benches/peers/lobes.sh ${short:+1}
 [ -z "$browser" ] || kept browser scripts/browser.sh bench --peers
 
 processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)
