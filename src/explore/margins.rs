@@ -114,12 +114,17 @@ impl Margins {
         };
         if margins.decays {
             margins.fill(&around, setting);
+        } else if around.beyond_letter() {
+            // That counts from no latency at all, whatever holds at the setting's own.
+            let latency = around.latency(&mut Search::default());
+            margins.note("latency_margin", &[latency]);
+            margins.latency_margin = finite(latency);
         }
         Ok(margins)
     }
 
-    /// Of a system beyond the letter's, as far as its stability over the delay tells: at the delay
-    /// `tau`.
+    /// Of a system from a file and of friction with a state, as far as stability over the delay
+    /// tells: at the delay `tau`.
     #[must_use]
     pub fn of_stability(stability: &Stability, tau: f64) -> Self {
         let mut margins = Self {

@@ -14,21 +14,21 @@ use crate::sweep::input::toml_reader::SpecError;
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 impl Draft {
-    /// Motions, margins and best settings know memory, latency, lags and a state of
-    /// friction as far as they do.
+    /// Motions and best settings know memory, latency, lags and a state of friction as far as they
+    /// do, margins all but the state.
     pub(super) fn check_beyond_letter(&self, fixed: &Setting) -> Result<(), SpecError> {
         self.check_motions_are_known(fixed)?;
         let law = fixed.law().filter(|law| law.has_state());
-        let beyond = match (
-            law,
-            beyond_letter(fixed, &self.axes, &Parameter::BEYOND_LETTER),
-        ) {
-            (_, Some(parameter)) => parameter.name().to_owned(),
-            (Some(law), None) => format!("the {} law", law.name()),
-            (None, None) => return Ok(()),
+        let of_slope =
+            law.and_then(|law| Some((self.of_slope()?, format!("the {} law", law.name()))));
+        let parameter = beyond_letter(fixed, &self.axes, &Parameter::BEYOND_LETTER);
+        let beyond = match (parameter, law) {
+            (Some(parameter), _) => Some(parameter.name().to_owned()),
+            (None, law) => law.map(|law| format!("the {} law", law.name())),
         };
-        match self.of_letter_alone(law.is_some()) {
-            Some((what, place)) => {
+        let best = || Some((("best", self.best.clone()?), beyond?));
+        match of_slope.or_else(best) {
+            Some(((what, place), beyond)) => {
                 let message = format!("{what} cannot be had with {beyond}");
                 Err(SpecError::at(place, message)
                     .help(format!("leave it out, or {beyond}; {LINEAR}")))
@@ -55,19 +55,14 @@ impl Draft {
         }
     }
 
-    /// What is asked for that is known of the letter's own feedback alone, and where.
-    fn of_letter_alone(&self, with_state: bool) -> Option<(&'static str, Range<usize>)> {
-        // With a state the slope does not say all of the friction.
+    /// What is asked for that is not known where friction has a state, as the slope does not say
+    /// all of it there, and where.
+    fn of_slope(&self) -> Option<(&'static str, Range<usize>)> {
+        let margin = |field: Field| field.of_margins() && field != Field::LatencyMargin;
         let slope = |field: Field| field == Field::DAbscissaDMuPrime;
-        let slope = self.limit.first_field(slope).filter(|_| with_state);
-        let margins = self
-            .limit
-            .first_field(|f| f.of_margins() && f != Field::LatencyMargin);
-        let margin = margins
-            .or(slope)
-            .map(|(field, place)| (field.name(), place.clone()));
-        let best = self.best.as_ref().map(|place| ("best", place.clone()));
-        margin.or(best)
+        let found = self.limit.first_field(margin);
+        let found = found.or_else(|| self.limit.first_field(slope));
+        found.map(|(field, place)| (field.name(), place.clone()))
     }
 
     /// The ratio of stiffnesses is that of one law.
