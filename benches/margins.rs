@@ -5,13 +5,16 @@
 //! setting are shown. Bisection is given the direction and looks for the first change in 64 steps
 //! up to twice the limit: it may miss what lies between two of them.
 //!
+//! Then the same at settings with nothing, memory, latency or lags beyond the letter's feedback, by
+//! the way that knows of them.
+//!
 //! Then the stability radius over a spread of laws, gains and delays, of which some are hard: the
 //! time of each once.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use slipmap::linear::margins::{self, Limits, Margins, Setting, SlidingLaw};
+use slipmap::linear::margins::{self, Beyond, Case, Limits, Margins, Setting, SlidingLaw};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
 
@@ -19,6 +22,8 @@ const SETTINGS: usize = 2000;
 const ROUNDS: usize = 5;
 const STEPS: u32 = 64;
 const LAW_SETTINGS: usize = 500;
+/// Stable settings of each kind beyond the letter.
+const BEYOND_SETTINGS: usize = 300;
 
 fn settings() -> Vec<Setting> {
     let mut state = 5_u64;
@@ -145,6 +150,66 @@ fn with_decay(setting: &Setting) {
     }
 }
 
+/// Mean times of margins beyond the letter.
+fn beyond(settings: &[Setting]) {
+    let nothing = Beyond::default();
+    let memory = Beyond {
+        memory: 0.3,
+        ..nothing
+    };
+    let latency = Beyond {
+        latency: 0.2,
+        ..nothing
+    };
+    let lags = Beyond {
+        load_lag: 0.1,
+        velocity_lag: 0.2,
+        sensor_lag: 0.05,
+        ..nothing
+    };
+    let all = Beyond {
+        memory: 0.3,
+        latency: 0.2,
+        ..lags
+    };
+    println!("{BEYOND_SETTINGS} stable settings of each kind, mean times");
+    for (name, beyond) in [
+        ("nothing", nothing),
+        ("memory", memory),
+        ("latency", latency),
+        ("lags", lags),
+        ("all of it", all),
+    ] {
+        let with = |setting: &Setting| Case::beyond(*setting, beyond);
+        let stable = settings.iter().filter(|s| with(s).stable());
+        let stable: Vec<Setting> = stable.take(BEYOND_SETTINGS).copied().collect();
+        let mut search = Margins::default();
+        let of = |of: &mut dyn FnMut(Case)| timed(&stable, |s| of(with(s))).0;
+        let gain = of(&mut |case| {
+            black_box(search.gain(&case));
+        });
+        let slope = of(&mut |case| {
+            black_box(search.slope(&case));
+        });
+        let delay = of(&mut |case| {
+            black_box(margins::delay(&case));
+        });
+        let phase = of(&mut |case| {
+            black_box(search.phase(&case));
+        });
+        let latency = of(&mut |case| {
+            black_box(search.latency(&case));
+        });
+        let radius = of(&mut |case| {
+            black_box(margins::radius(&case));
+        });
+        println!(
+            "{name:>10}: gain {gain:.2?}, slope {slope:.2?}, delay {delay:.2?}, phase {phase:.2?}, \
+             latency {latency:.2?}, radius {radius:.2?}"
+        );
+    }
+}
+
 /// The stability radius at stable settings of velocity control, load control and both, for four
 /// laws and for none, delays of 0.001 to 1000 and velocities of 0.02 to 10.
 fn radii_of_laws() {
@@ -224,5 +289,6 @@ fn main() {
         let (mean, longest) = times[ROUNDS / 2];
         println!("{name:>38}: mean {mean:>10.2?}, longest {longest:>10.2?}");
     }
+    beyond(&settings);
     radii_of_laws();
 }

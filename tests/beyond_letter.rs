@@ -455,8 +455,8 @@ fn what_cannot_be_had_is_told_at_its_key() {
     let told = [
         (
             "fields = [\"phase_margin\"]\n",
-            "mu_prime = -0.1\nmemory = 0.2\n",
-            "",
+            "v0 = 0.1\nmemory = 0.2\n",
+            STATE,
         ),
         (
             "fields = [\"outcome\"]\n",

@@ -39,7 +39,16 @@ fn margins(args: &[&str]) -> Value {
 #[test]
 fn margins_as_text() {
     let folder = Folder::new();
+    let beyond = [
+        "--memory",
+        "0.3",
+        "--latency",
+        "0.05",
+        "--sensor-lag",
+        "0.1",
+    ];
     for (name, args) in [
+        ("beyond_the_letter", [&FIG_3A[..], &beyond].concat()),
         ("with_law", FIG_3A.to_vec()),
         (
             "with_decay",
@@ -169,8 +178,8 @@ impl Rows {
     }
 
     fn get(&self, row: &csv::StringRecord, name: &str) -> f64 {
-        let column = self.names.iter().position(|n| n.starts_with(name)).unwrap();
-        row[column].parse().unwrap_or(f64::NAN)
+        let column = self.names.iter().position(|n| n.starts_with(name));
+        column.map_or(f64::NAN, |column| row[column].parse().unwrap_or(f64::NAN))
     }
 }
 
@@ -201,9 +210,52 @@ fn maps_hold_the_margins_of_their_cells() {
     }
 }
 
+/// The same with memory and latency, of the fields that do not take long.
+#[test]
+fn maps_hold_the_margins_of_their_cells_with_memory_and_latency() {
+    let sweep = format!(
+        "fields = [\"n_unstable\", \"gain_margin_lower\", \"gain_margin_upper\", \
+         \"phase_margin\", \"latency_margin\", \"stability_radius\"]\n{RIG}\
+         [axes]\nmemory = [-0.4, 0.0, 0.3]\nalpha_n = {{ from = -60, to = 10, points = 4 }}\n\
+         tau = {{ from = 0, to = 1.5, points = 4 }}\n\
+         [fixed]\nmass = 4\nstiffness = 9\nnormal_load = 3\nmu_k = 0.5\nmu_prime = -0.2\n\
+         latency = 0.05\n"
+    );
+    let folder = Folder::with(&[("margins.toml", &sweep)]);
+    let run = folder.run(&["run", "margins.toml", "--fresh"]);
+    assert!(run.status.success(), "{}", program::err(&run));
+    let cells = Rows::read(&out(&folder.run(&["export", "margins.h5", "-o", "-"])));
+    let get = |row: &csv::StringRecord, name: &str| cells.get(row, name);
+    let with_memory = |row: &&csv::StringRecord| {
+        get(row, "n_unstable") == 0.0 && get(row, "memory") != 0.0 && get(row, "tau") > 0.0
+    };
+    let stable: Vec<_> = cells.rows.iter().filter(with_memory).collect();
+    assert!((3..24).contains(&stable.len()), "{}", stable.len());
+    for row in &stable {
+        // Control keeps it stable that is unstable without.
+        let [lower, upper] = ["gain_margin_lower", "gain_margin_upper"].map(|n| get(row, n));
+        assert!(0.0 < lower && lower < 1.0 && 1.0 < upper, "{lower} {upper}");
+        let rest = ["phase_margin", "latency_margin", "stability_radius"].map(|n| get(row, n));
+        assert!(rest.iter().all(|margin| *margin > 0.0), "{rest:?}");
+    }
+    for row in &cells.rows {
+        check_cell(&|name| cells.get(row, name));
+    }
+}
+
 fn check_cell(held: &dyn Fn(&str) -> f64) {
     let [alpha_n, tau] = ["alpha_n", "tau"].map(|name| held(name).to_string());
-    let found = margins(&[
+    let memory = held("memory");
+    let beyond = match memory.is_nan() {
+        true => Vec::new(),
+        false => vec![
+            "--latency".to_owned(),
+            "0.05".to_owned(),
+            format!("--memory={memory}"),
+        ],
+    };
+    let beyond: Vec<&str> = beyond.iter().map(String::as_str).collect();
+    let plain = [
         "--units",
         "SI",
         "--mass",
@@ -220,7 +272,8 @@ fn check_cell(held: &dyn Fn(&str) -> f64) {
         &alpha_n,
         "--tau",
         &tau,
-    ]);
+    ];
+    let found = margins(&[&plain[..], &beyond].concat());
     let none = match held("n_unstable") {
         0.0 => f64::INFINITY,
         _ => f64::NAN,

@@ -17,15 +17,16 @@ pub struct Margins {
     pub required_decay: f64,
     /// Whether the setting has it, beyond doubt.
     pub decays: bool,
-    /// The factors of both gains between which it stays; null where the setting has it not.
+    /// The factors of both gains between which the setting keeps the decay rate; null where it does
+    /// not have it.
     pub gain_margin: Option<Range>,
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
-    /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
+    /// the loop is nowhere as large as 1. 0 where the setting does not have the decay rate.
     pub phase_margin: Option<f64>,
     /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
-    /// the setting without latency has not the decay rate.
+    /// the setting without latency does not have the decay rate.
     pub latency_margin: Option<f64>,
-    /// The delays between which it stays; null where the setting has it not.
+    /// The delays between which the setting keeps the decay rate; null where it does not have it.
     pub tau_margin: Option<Margin>,
     /// The slopes μ_K′ between which it stays, at fixed μ_K; null where the setting has it not, and
     /// where there is a friction law.
@@ -36,24 +37,23 @@ pub struct Margins {
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
     /// the setting has it not, null where that is not known.
     pub stability_radius: Option<f64>,
-    /// That box; null where the setting has not the decay rate.
+    /// That box; null where the setting does not have the decay rate.
     pub stability_box: Option<StabilityBox>,
-    /// The margins above that could not be decided, or are not known of such a system: they are
-    /// null for that, or the end of them that is null.
+    /// The margins above that are undecided or not available for this system; their null values
+    /// mean this.
     pub undecided: Vec<&'static str>,
-    /// Up to where margins were looked for that have no upper end here.
+    /// The ends of the searches for margins without an upper end here.
     pub looked_up_to: LookedUpTo,
 }
 
-/// The last values that were looked at, where nothing is lost up to them and what lies beyond is
-/// not known.
+/// The ends of searches in which nothing was lost; beyond them nothing is known.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LookedUpTo {
     /// The factor of both gains; null where the upper end is known, known not to be, or not
     /// decided.
     pub gain_margin: Option<f64>,
-    /// The further latency; null where it is known whether there is one that matters.
+    /// The latency; null where the margin is known.
     pub latency_margin: Option<f64>,
     /// The delay; null where the upper end is known, known not to be, or not decided.
     pub tau_margin: Option<f64>,
@@ -114,12 +114,17 @@ impl Margins {
         };
         if margins.decays {
             margins.fill(&around, setting);
+        } else if around.beyond_letter() {
+            // That counts from no latency at all, whatever holds at the setting's own.
+            let latency = around.latency(&mut Search::default());
+            margins.note("latency_margin", &[latency]);
+            margins.latency_margin = finite(latency);
         }
         Ok(margins)
     }
 
-    /// The margins of a general system at the delay `tau`, as far as they follow from its stability
-    /// over the delay.
+    /// Of a system from a file and of friction with a state, as far as stability over the delay
+    /// tells: at the delay `tau`.
     #[must_use]
     pub fn of_stability(stability: &Stability, tau: f64) -> Self {
         let mut margins = Self {

@@ -45,8 +45,10 @@ impl Point {
         let tau = setting.get(Parameter::Tau);
         let stability = Stability::of(&model, time_unit, tau, wanted);
         let margins = match &model {
-            LinearModel::Letter(_) => Margins::at(setting, 0.0)?,
-            LinearModel::General(_) => Margins::of_stability(&stability, tau),
+            LinearModel::General(_) if setting.has_state() => {
+                Margins::of_stability(&stability, tau)
+            }
+            _ => Margins::at(setting, 0.0)?,
         };
         Ok(Self {
             mu_prime: sliding.mu_prime,

@@ -78,7 +78,7 @@ impl Polynomial {
     }
 
     /// From coefficients with their errors; the highest one may be 0.
-    pub(super) fn of(degree: usize, coefficient: impl Fn(usize) -> Rounded) -> Self {
+    pub(in crate::linear) fn of(degree: usize, coefficient: impl Fn(usize) -> Rounded) -> Self {
         let mut all = Self::ZERO;
         for k in 0..=degree {
             let Rounded { value, error } = coefficient(k);
@@ -133,7 +133,7 @@ impl Polynomial {
     }
 
     #[inline]
-    pub(super) fn coefficient(&self, k: usize) -> Rounded {
+    pub(in crate::linear) fn coefficient(&self, k: usize) -> Rounded {
         Rounded {
             value: self.values[k],
             error: self.errors[k],
@@ -168,7 +168,7 @@ impl Polynomial {
 
     /// `self` times a number.
     #[must_use]
-    pub(super) fn scaled(&self, by: Rounded) -> Self {
+    pub(in crate::linear) fn scaled(&self, by: Rounded) -> Self {
         Self::of(self.degree, |k| product(self.coefficient(k), by))
     }
 
@@ -207,7 +207,7 @@ impl Polynomial {
 
     /// The polynomial in z for s = `by` + z.
     #[must_use]
-    pub(super) fn shifted(&self, by: f64) -> Self {
+    pub(in crate::linear) fn shifted(&self, by: f64) -> Self {
         if by == 0.0 {
             return *self;
         }

@@ -2,10 +2,11 @@
 //! a decay rate is required, and the sliding velocity.
 
 use super::affine::Affine;
+use super::beyond::{Beyond, UpTo};
 use super::enclosure::{Enclosed, Point, SlidingLaw, root_bound};
+use super::limits::Limits;
 use super::nearest::{Family, MOST_BOXES, Nearest, nearest};
-use super::surroundings::is_stable;
-use super::{Limits, Setting};
+use super::setting::{AsCase, Case, Setting};
 use crate::linear::Crossings;
 use crate::model::Groups;
 use crate::model::elementary::exp;
@@ -15,13 +16,20 @@ use crate::model::friction::Kind;
 const LARGEST_EXPONENT: f64 = 300.0;
 /// How many times as large a sliding velocity is looked at.
 pub const MOST_VELOCITIES: f64 = 1024.0;
+/// Up to this part of the delay at which infinitely many roots come to the line others are looked
+/// for: nearer to it there may be any number of them.
+const BEFORE_ACCUMULATION: f64 = 1.0 - 1e-3;
 
 /// The delays at which stability is lost, 0 below where none is.
 #[must_use]
-pub fn delay(setting: &Setting) -> Limits {
-    let Setting { groups, tau, decay } = *setting;
+pub fn delay(of: &impl AsCase) -> Limits {
+    let case = of.case();
+    let Setting { groups, tau, decay } = case.setting;
     if decay == 0.0 {
-        let interval = Crossings::of(groups).stable_interval_at(tau);
+        let interval = match &case.beyond {
+            Some(beyond) => beyond.stable_interval_at(groups, tau),
+            None => Crossings::of(groups).stable_interval_at(tau),
+        };
         return interval.map_or(Limits::UNDECIDED, |found| Limits {
             lower: found.from,
             upper: found.to,
@@ -33,18 +41,22 @@ pub fn delay(setting: &Setting) -> Limits {
             upper: f64::INFINITY,
         };
     }
-    let family = Along::delay(setting);
-    let longest = longest_delay(setting);
+    let what = Varied::Delay;
+    let family = Along { case, what };
+    let longest = longest_delay(&case);
+    let upper = outwards(&family, tau, tau.max(1.0), longest);
+    // Stability is lost where roots accumulate at the latest.
+    let open = upper == f64::INFINITY && longest < longest_searched(&case.setting);
     Limits {
         lower: found_or(nearest(&family, (tau, 0.0), &mut { MOST_BOXES }), 0.0),
-        upper: outwards(&family, tau, tau.max(1.0), longest),
+        upper: if open { f64::NAN } else { upper },
     }
 }
 
 /// The sliding velocities at which stability is lost on the way from `v0`, physical; 0 below and ∞
 /// above where it is not, up to 1024 times `v0`.
 #[must_use]
-pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
+pub fn velocity(of: &impl AsCase, law: &SlidingLaw<'_>, v0: f64) -> Limits {
     if matches!(law.law.kind(), Kind::Coulomb { .. }) {
         // No velocity changes D.
         return Limits {
@@ -53,9 +65,10 @@ pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
         };
     }
     let family = Along {
-        setting: *setting,
+        case: of.case(),
         what: Varied::Velocity(*law),
     };
+    let case = &family.case;
     let change = |to: f64| {
         let (mut from, mut left) = (v0, MOST_BOXES);
         loop {
@@ -63,8 +76,8 @@ pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
                 Nearest::At(v) => {
                     // Where a pair only touches the line, the search goes on beyond.
                     let beyond = v + 1e-6 * (to - v).clamp(-v, v);
-                    let groups = law.groups(beyond);
-                    if beyond == v || !is_stable(groups, setting.tau, setting.decay) {
+                    let stable = || case.stability_at(law.groups(beyond), case.setting.tau);
+                    if beyond == v || stable() != Some(true) {
                         return Nearest::At(v);
                     }
                     from = beyond;
@@ -80,13 +93,25 @@ pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
 }
 
 /// The longest delay that is looked at where a decay rate is required.
-pub(super) fn longest_delay(setting: &Setting) -> f64 {
-    longest_latency(setting).max(2.0 * setting.tau)
+pub(super) fn longest_delay(case: &Case) -> f64 {
+    let searched = longest_searched(&case.setting);
+    match &case.beyond {
+        Some(beyond) => {
+            let last = BEFORE_ACCUMULATION * beyond.last_delay(case.setting.decay);
+            searched.min(last.max(case.setting.tau))
+        }
+        None => searched,
+    }
+}
+
+/// The same wherever roots accumulate.
+fn longest_searched(setting: &Setting) -> f64 {
+    longest_latency(setting.decay).max(2.0 * setting.tau)
 }
 
 /// The longest latency that is looked at there.
-pub(super) fn longest_latency(setting: &Setting) -> f64 {
-    LARGEST_EXPONENT / setting.decay
+pub(super) fn longest_latency(decay: f64) -> f64 {
+    LARGEST_EXPONENT / decay
 }
 
 fn found_or(nearest: Nearest, none: f64) -> f64 {
@@ -112,17 +137,37 @@ fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
 }
 
 /// The latency margin where a decay rate is required.
-pub(super) fn latency_with_decay(setting: &Setting) -> f64 {
+pub(super) fn latency_with_decay(case: &Case) -> f64 {
     let family = Along {
-        setting: *setting,
+        case: *case,
         what: Varied::Latency,
     };
-    outwards(&family, 0.0, 1.0, longest_latency(setting))
+    outwards(&family, 0.0, 1.0, longest_latency(case.setting.decay))
+}
+
+/// The latency margin beyond the letter, counted from no latency with all else as it is; 0 where
+/// that is not stable.
+pub(super) fn latency(case: &Case, beyond: &Beyond) -> f64 {
+    let Setting { groups, tau, decay } = case.setting;
+    if decay == 0.0 {
+        let margin = beyond.system(groups).latency_margin(tau);
+        return margin.unwrap_or(f64::NAN);
+    }
+    let at_once = Beyond {
+        latency: 0.0,
+        ..*beyond
+    };
+    match at_once.stability(groups, tau, decay) {
+        Some(true) if case.setting.idle() => f64::INFINITY,
+        Some(true) => latency_with_decay(case),
+        Some(false) => 0.0,
+        None => f64::NAN,
+    }
 }
 
 /// Settings that differ in one parameter.
 struct Along<'a> {
-    setting: Setting,
+    case: Case,
     what: Varied<'a>,
 }
 
@@ -132,18 +177,9 @@ enum Varied<'a> {
     Velocity(SlidingLaw<'a>),
 }
 
-impl Along<'_> {
-    fn delay(setting: &Setting) -> Self {
-        Self {
-            setting: *setting,
-            what: Varied::Delay,
-        }
-    }
-}
-
 impl Family for Along<'_> {
     fn enclosed(&self, omega: (f64, f64), parameter: (f64, f64)) -> Enclosed<2> {
-        let Setting { groups, tau, decay } = self.setting;
+        let Setting { groups, tau, decay } = self.case.setting;
         let constant = |value: f64| Affine::constant(value.into());
         let mut point = Point {
             lambda: Point::on_line(decay, omega),
@@ -154,6 +190,7 @@ impl Family for Along<'_> {
             a_v: groups.a_v,
             latency: None,
             law: matches!(self.what, Varied::Velocity(_)).then_some(1),
+            beyond: self.case.beyond,
         };
         match &self.what {
             Varied::Delay => point.tau = Affine::between(parameter, 1),
@@ -168,8 +205,33 @@ impl Family for Along<'_> {
     }
 
     fn bound(&self, parameter: (f64, f64)) -> f64 {
-        let Setting { groups, tau, decay } = self.setting;
+        let Setting { groups, tau, decay } = self.case.setting;
         let Groups { b, a_v, a_n } = groups;
+        if let Some(beyond) = &self.case.beyond {
+            let latency = beyond.latency;
+            let here = UpTo {
+                b,
+                a_v,
+                a_n,
+                tau,
+                latency,
+            };
+            let up_to = match &self.what {
+                Varied::Delay => UpTo {
+                    tau: parameter.1,
+                    ..here
+                },
+                Varied::Latency => UpTo {
+                    latency: parameter.1,
+                    ..here
+                },
+                Varied::Velocity(law) => {
+                    let (b, a_n) = law.largest(parameter);
+                    UpTo { b, a_n, ..here }
+                }
+            };
+            return beyond.highest(up_to, decay);
+        }
         let delayed = |tau: f64| 1.0 + exp(decay * tau);
         let bound = match &self.what {
             Varied::Delay => root_bound(b, a_v, a_n, delayed(parameter.1)),

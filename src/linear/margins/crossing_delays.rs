@@ -6,6 +6,12 @@
 //! τ_n = −(ln(1 − B/(k A)) + 2πi n)/λ,    which has to be real                              (2)
 //! ```
 //!
+//! and beyond the letter, A holding e^(−λδ),
+//!
+//! ```text
+//! D = B(1 − R e^(−λτ)) − k A (1 − e^(−λτ)) = 0    ⇔    e^(−λτ) = 1 − (1 − R) B/(k A − R B)  (3)
+//! ```
+//!
 //! So the delay need not be searched for: in a box without it only the τ_n nearest to the delay of
 //! a setting matter, and a long delay, which turns e^(−λτ) often, is no harder than a short one.
 
@@ -14,7 +20,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use super::affine::Affine;
-use super::enclosure::Point;
+use super::enclosure::{Parts, Point};
 use crate::model::elementary::norm;
 
 /// The delays (2) that are nearest to the one of a setting.
@@ -66,15 +72,20 @@ fn where_real<const V: usize>(z: &Affine<V>) -> (f64, f64) {
 }
 
 impl<const V: usize> Point<V> {
-    /// Whether e^(−λτ) by (1) may be at least this large.
+    /// Whether e^(−λτ) by (1) or (3) may be at least this large.
     pub(super) fn reaches(&self, delayed: f64) -> bool {
-        let Self {
-            lambda, factor, b, ..
-        } = *self;
-        let feedback = factor * (self.a_n + (b + lambda).scaled(self.a_v));
-        let open = lambda * (lambda + b) + Affine::constant(1.0.into());
+        let Parts {
+            open,
+            feedback,
+            memory,
+            ..
+        } = self.parts();
         let off = |z: &Affine<V>| z.spread() + z.rest;
         let delayed_part = feedback - open;
+        let feedback = match memory {
+            0.0 => feedback,
+            memory => feedback - open.scaled(memory),
+        };
         let most = norm(delayed_part.centre) + off(&delayed_part);
         let least = norm(feedback.centre) - off(&feedback);
         most * (1.0 + 1e-12) >= least * delayed
@@ -86,8 +97,16 @@ impl<const V: usize> Point<V> {
             lambda, factor, b, ..
         } = *self;
         let one = Affine::constant(1.0.into());
-        let feedback = factor * (self.a_n + (b + lambda).scaled(self.a_v));
-        let open = lambda * (lambda + b) + one;
+        let Parts {
+            mut open,
+            mut feedback,
+            memory,
+            ..
+        } = self.parts();
+        if memory != 0.0 {
+            feedback = feedback - open.scaled(memory);
+            open = open.scaled(1.0 - memory);
+        }
         let Some(inverse) = lambda.reciprocal() else {
             return Delays::Unknown;
         };

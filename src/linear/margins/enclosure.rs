@@ -6,11 +6,17 @@
 //! ```
 //!
 //! Both gains are k times as large as at the centre, δ is a latency of the feedback. A friction
-//! law makes b and a_n functions of the sliding velocity.
+//! law makes b and a_n functions of the sliding velocity. Beyond the letter's own feedback
+//!
+//! ```text
+//! D = B(1 − R e^(−λτ)) − k A (1 − e^(−λτ)) e^(−λδ),   B = (λ² + bλ + 1) L_a L_v L_s
+//! A = a_n L_v + a_v (b + λ) L_a                                                            (2)
+//! ```
 
 use num_complex::Complex64;
 
 use super::affine::Affine;
+use super::beyond::Beyond;
 use crate::model::{Control, FrictionLaw, Groups, Oscillator, SlidingPoint};
 
 /// What (1) depends on.
@@ -26,6 +32,20 @@ pub(super) struct Point<const V: usize> {
     pub latency: Option<Affine<V>>,
     /// The variable on which b and a_n depend by a law that is not straight.
     pub law: Option<usize>,
+    /// Memory, latency and lags.
+    pub beyond: Option<Beyond>,
+}
+
+/// What D is made of over a box, at any delay.
+pub(super) struct Parts<const V: usize> {
+    /// B.
+    pub open: Affine<V>,
+    /// k A, with e^(−λδ) beyond the letter.
+    pub feedback: Affine<V>,
+    /// R.
+    pub memory: f64,
+    /// λδ, where there is a latency.
+    late: Option<Affine<V>>,
 }
 
 /// D over a box.
@@ -37,24 +57,80 @@ pub(super) struct Enclosed<const V: usize> {
 }
 
 impl<const V: usize> Point<V> {
-    /// D, (1).
-    pub(super) fn enclosed(&self) -> Enclosed<V> {
+    /// What (1) or (2) is made of, without the latency of the former.
+    #[inline]
+    pub(super) fn parts(&self) -> Parts<V> {
         let Self {
             lambda, factor, b, ..
         } = *self;
         let one = Affine::constant(1.0.into());
-        let angle = lambda * self.tau;
-        let feedback = factor * (self.a_n + (b + lambda).scaled(self.a_v));
-        let mut control = feedback * (one - angle.scaled(-1.0).exponential());
-        let mut turns = angle;
-        if let Some(latency) = self.latency {
-            let late = lambda * latency;
-            control = control * late.scaled(-1.0).exponential();
-            turns = turns + late;
+        let Some(beyond) = &self.beyond else {
+            return Parts {
+                open: lambda * (lambda + b) + one,
+                feedback: factor * (self.a_n + (b + lambda).scaled(self.a_v)),
+                memory: 0.0,
+                late: None,
+            };
+        };
+        let lag = |time: f64| one + lambda.scaled(time);
+        let passing = |number: Affine<V>, time: f64| match time {
+            0.0 => number,
+            time => number * lag(time),
+        };
+        let mut open = lambda * (lambda + b) + one;
+        for time in [beyond.load_lag, beyond.velocity_lag, beyond.sensor_lag] {
+            open = passing(open, time);
         }
-        let value = lambda * (lambda + b) + one - control;
+        let load = passing(self.a_n, beyond.velocity_lag);
+        let velocity = passing((b + lambda).scaled(self.a_v), beyond.load_lag);
+        let feedback = factor * (load + velocity);
+        let fixed = || match beyond.latency {
+            0.0 => None,
+            latency => Some(lambda.scaled(latency)),
+        };
+        let late = self.latency.map_or_else(fixed, |l| Some(lambda * l));
+        Parts {
+            open,
+            feedback: late.map_or(feedback, |l| feedback * l.scaled(-1.0).exponential()),
+            memory: beyond.memory,
+            late,
+        }
+    }
+
+    /// D, (1) or (2).
+    pub(super) fn enclosed(&self) -> Enclosed<V> {
+        let Self { lambda, .. } = *self;
+        let one = Affine::constant(1.0.into());
+        let angle = lambda * self.tau;
+        let Parts {
+            open,
+            feedback,
+            memory,
+            late,
+        } = self.parts();
+        let delayed = angle.scaled(-1.0).exponential();
+        let mut control = feedback * (one - delayed);
+        let mut turns = angle;
+        let mut strength = feedback.centre.l1_norm() + feedback.spread();
+        let mut value = open;
+        if self.beyond.is_none() {
+            if let Some(latency) = self.latency {
+                let late = lambda * latency;
+                control = control * late.scaled(-1.0).exponential();
+                turns = turns + late;
+            }
+        } else {
+            if let Some(late) = late {
+                turns = turns + late;
+                strength += feedback.rest;
+            }
+            if memory != 0.0 {
+                value = open * (one - delayed.scaled(memory));
+                strength += memory.abs() * (open.centre.l1_norm() + open.spread());
+            }
+        }
+        let value = value - control;
         // A wide angle leaves no parts to judge by.
-        let strength = feedback.centre.l1_norm() + feedback.spread();
         let mut weights = [0.0; V];
         for (i, weight) in weights.iter_mut().enumerate() {
             *weight = value.part[i].l1_norm() + strength * turns.part[i].l1_norm();
@@ -62,7 +138,7 @@ impl<const V: usize> Point<V> {
         // Nor does a wide range of a law.
         if let Some(variable) = self.law {
             let by_b = lambda.centre.l1_norm() + lambda.spread() + 2.0 * self.a_v.abs();
-            weights[variable] += b.rest * by_b + 2.0 * self.a_n.rest;
+            weights[variable] += self.b.rest * by_b + 2.0 * self.a_n.rest;
         }
         Enclosed { value, weights }
     }

@@ -20,10 +20,48 @@
 
 use num_complex::Complex64;
 
-use super::trig_polynomial::{Polynomial, TrigPolynomial};
+use super::setting::Setting;
+use super::trig_polynomial::{self, Polynomial, TrigPolynomial};
+use super::zeros::Wave;
 use crate::linear::characteristic::{Jet, root_bound};
 use crate::model::Groups;
 use crate::model::elementary::exp;
+
+/// A setting's equations in ω: those of the letter here, those beyond it in
+/// [`beyond`](super::beyond).
+pub(super) trait OnLine {
+    type Function: Wave;
+
+    /// The left side of (1), or of (4) on the imaginary axis.
+    fn gain(&self) -> Self::Function;
+
+    /// The factor k of the gains that a zero of [`OnLine::gain`] belongs to.
+    fn gain_factor(&self, omega: f64) -> f64;
+
+    /// No root with gains of up to `factor` times as much lies on the line beyond this ω.
+    fn gain_bound(&self, factor: f64) -> f64;
+
+    /// No crossing at any factor of the gains has a frequency beyond this.
+    fn highest_with_gain(&self) -> f64;
+
+    /// The left side of (2).
+    fn slope(&self) -> Self::Function;
+
+    /// The slope b that a zero of [`OnLine::slope`] belongs to.
+    fn slope_at(&self, omega: f64) -> f64;
+
+    /// No root of any slope b lies on the line beyond this ω.
+    fn slope_bound(&self) -> f64;
+
+    /// The left side minus the right side of (3).
+    fn unit_loop(&self) -> Self::Function;
+
+    /// −L.
+    fn negative_loop(&self, omega: f64) -> Complex64;
+
+    /// No zero of (3) lies beyond this ω.
+    fn unit_loop_bound(&self) -> f64;
+}
 
 /// D on the line Re λ = −σ.
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +105,11 @@ impl Complex {
 }
 
 impl Line {
+    pub(super) fn of(setting: &Setting) -> Self {
+        let Setting { groups, tau, decay } = *setting;
+        Self { groups, tau, decay }
+    }
+
     /// λ.
     fn lambda(&self) -> Complex {
         Complex::of([-self.decay, 0.0], [0.0, 1.0])
@@ -89,40 +132,8 @@ impl Line {
         exp(self.decay * self.tau)
     }
 
-    /// The left side of (1), or of (4) on the imaginary axis.
-    pub(super) fn gain(&self) -> TrigPolynomial {
-        let product = self.feedback().times(self.open_loop().conjugate());
-        if self.decay == 0.0 {
-            return TrigPolynomial {
-                free: Polynomial::default(),
-                cosine: product.re,
-                sine: product.im,
-                t: 0.5 * self.tau,
-            };
-        }
-        let q = self.size_of_delayed();
-        // S = 1 − q cos ωτ + i q sin ωτ.
-        TrigPolynomial {
-            free: product.im,
-            cosine: Polynomial::default().plus(product.im, -q),
-            sine: Polynomial::default().plus(product.re, q),
-            t: self.tau,
-        }
-    }
-
-    /// The factor k of the gains that a zero of [`Line::gain`] belongs to.
-    pub(super) fn gain_factor(&self, omega: f64) -> f64 {
-        let at = self.at(omega);
-        let product = at.feedback * at.open_loop.conj();
-        let size = at.open_loop.norm_sqr();
-        if self.decay == 0.0 {
-            return size / (2.0 * product.re);
-        }
-        size / (product * at.difference).re
-    }
-
     /// The left side of (2).
-    pub(super) fn slope(&self) -> TrigPolynomial {
+    fn slope_equation(&self) -> TrigPolynomial {
         let Groups { a_v, a_n, .. } = self.groups;
         let (s, q) = (self.decay, self.size_of_delayed());
         let lambda = self.lambda();
@@ -144,8 +155,58 @@ impl Line {
         }
     }
 
-    /// The slope b that a zero of [`Line::slope`] belongs to.
-    pub(super) fn slope_at(&self, omega: f64) -> f64 {
+    fn at(&self, omega: f64) -> Values {
+        let lambda = Complex64::new(-self.decay, omega);
+        let jet = Jet::at(self.groups, self.tau, lambda);
+        Values {
+            lambda,
+            difference: jet.difference,
+            feedback: jet.feedback,
+            open_loop: lambda * (lambda + self.groups.b) + 1.0,
+        }
+    }
+}
+
+impl OnLine for Line {
+    type Function = trig_polynomial::Jet;
+
+    fn gain(&self) -> trig_polynomial::Jet {
+        let product = self.feedback().times(self.open_loop().conjugate());
+        if self.decay == 0.0 {
+            let on_axis = TrigPolynomial {
+                free: Polynomial::default(),
+                cosine: product.re,
+                sine: product.im,
+                t: 0.5 * self.tau,
+            };
+            return on_axis.jet();
+        }
+        let q = self.size_of_delayed();
+        // S = 1 − q cos ωτ + i q sin ωτ.
+        let f = TrigPolynomial {
+            free: product.im,
+            cosine: Polynomial::default().plus(product.im, -q),
+            sine: Polynomial::default().plus(product.re, q),
+            t: self.tau,
+        };
+        f.jet()
+    }
+
+    fn gain_factor(&self, omega: f64) -> f64 {
+        let at = self.at(omega);
+        let product = at.feedback * at.open_loop.conj();
+        let size = at.open_loop.norm_sqr();
+        if self.decay == 0.0 {
+            return size / (2.0 * product.re);
+        }
+        size / (product * at.difference).re
+    }
+
+    fn slope(&self) -> trig_polynomial::Jet {
+        self.slope_equation().jet()
+    }
+
+    fn slope_at(&self, omega: f64) -> f64 {
         let Groups { a_v, a_n, .. } = self.groups;
         let at = self.at(omega);
         let lambda = at.lambda;
@@ -154,32 +215,29 @@ impl Line {
         -(n * m.conj()).re / m.norm_sqr()
     }
 
-    /// The left side minus the right side of (3).
-    pub(super) fn unit_loop(&self) -> TrigPolynomial {
+    fn unit_loop(&self) -> trig_polynomial::Jet {
         let q = self.size_of_delayed();
         let size = |z: Complex| z.re.times(z.re).plus(z.im.times(z.im), 1.0);
         let feedback = size(self.feedback());
         let open = size(self.open_loop());
         let none = Polynomial::default();
-        TrigPolynomial {
+        let f = TrigPolynomial {
             free: none.plus(open, -1.0).plus(feedback, 1.0 + q * q),
             cosine: none.plus(feedback, -2.0 * q),
             sine: none,
             t: self.tau,
-        }
+        };
+        f.jet()
     }
 
-    /// −L.
-    pub(super) fn negative_loop(&self, omega: f64) -> Complex64 {
+    fn negative_loop(&self, omega: f64) -> Complex64 {
         let at = self.at(omega);
         at.feedback * at.difference / at.open_loop
     }
 
-    /// No root of any slope b lies on the line beyond this ω.
-    ///
     /// In (2) |uλ* + …| is ω³ and more, all the rest at most quadratic in ω.
-    pub(super) fn slope_bound(&self) -> f64 {
-        let f = self.slope();
+    fn slope_bound(&self) -> f64 {
+        let f = self.slope_equation();
         let rest = |i: usize| {
             let waves = f.cosine.0[i].abs() + f.sine.0[i].abs();
             waves + if i < 3 { f.free.0[i].abs() } else { 0.0 }
@@ -189,27 +247,25 @@ impl Line {
         1.0 + (0..3).map(rest).fold(0.0, f64::max) / f.free.0[3].abs()
     }
 
-    /// No root with gains of up to `factor` times as much lies on the line beyond this ω.
-    pub(super) fn gain_bound(&self, factor: f64) -> f64 {
+    fn gain_bound(&self, factor: f64) -> f64 {
         let Groups { b, a_v, a_n } = self.groups;
         let groups = Groups::new(b, factor * a_v, factor * a_n);
         root_bound(groups, self.tau, -self.decay)
     }
 
-    /// No zero of (3) lies beyond this ω.
-    pub(super) fn unit_loop_bound(&self) -> f64 {
+    fn unit_loop_bound(&self) -> f64 {
         // |B| = |A||S| ≤ |A|(1 + q) is what the bound on roots is made of.
         self.gain_bound(1.0)
     }
 
-    fn at(&self, omega: f64) -> Values {
-        let lambda = Complex64::new(-self.decay, omega);
-        let jet = Jet::at(self.groups, self.tau, lambda);
-        Values {
-            lambda,
-            difference: jet.difference,
-            feedback: jet.feedback,
-            open_loop: lambda * (lambda + self.groups.b) + 1.0,
+    /// On the imaginary axis P_r = c − a_n x has to be positive, c = a_n + a_v b.
+    fn highest_with_gain(&self) -> f64 {
+        let Groups { b, a_v, a_n } = self.groups;
+        let c = a_n + a_v * b;
+        match self.decay {
+            0.0 if a_n > 0.0 => (c / a_n).max(0.0).sqrt(),
+            0.0 if a_n == 0.0 && c <= 0.0 => 0.0,
+            _ => f64::INFINITY,
         }
     }
 }

@@ -25,78 +25,54 @@
 //!
 //! - `affine`: complex affine arithmetic
 //! - `along`: limits along the delay, the latency and the sliding velocity
+//! - `beyond`: the same with memory, latency and lags
 //! - `crossing_delays`: the delays at which a root is on the line, over boxes of the other
 //!   variables
 //! - `enclosure`: D over boxes of frequency and parameters
+//! - `equations`: where a root is on the line, as equations in ω
+//! - `limits`: what margins are told as
+//! - `nearest`: the nearest value of one parameter at which a root is on the line, by boxes
 //! - `nearest_change`: the nearest value of one parameter at which stability is lost, as the count
 //!   has it
 //! - `not_stable`: settings around one that are not stable
 //! - `radius`: the stability radius, proved
+//! - `setting`: a setting, the letter's own or one beyond it
 //! - `surroundings`: the settings around a setting: what D depends on, which are stable
-//! - `trig_polynomial`: all zeros of functions that are polynomials in ω, sin tω and cos tω
+//! - `trig_polynomial`: functions that are polynomials in ω, sin tω and cos tω
+//! - `zeros`: all zeros of a function of ω in an interval
 
 mod affine;
 mod along;
+mod beyond;
 mod crossing_delays;
 mod enclosure;
 mod equations;
+mod limits;
 mod nearest;
 mod nearest_change;
 mod not_stable;
 mod radius;
+mod setting;
 mod surroundings;
 mod trig_polynomial;
+mod zeros;
 
 use std::f64::consts::TAU;
 
-use self::along::latency_with_decay;
-use self::equations::Line;
+use self::beyond::Equations;
+use self::equations::{Line, OnLine};
 use self::nearest_change::{Search, Side};
-use self::surroundings::{Surroundings, Third, is_stable, stability};
-use self::trig_polynomial::{Intervals, TooMany};
-use crate::model::Groups;
+use self::surroundings::{Surroundings, Third};
+use self::zeros::{Intervals, TooMany};
 use crate::model::elementary::arg;
 
 pub use self::along::{MOST_VELOCITIES, delay, velocity};
+pub use self::beyond::Beyond;
 pub use self::enclosure::SlidingLaw;
+pub use self::limits::{Limits, LoopMargins};
 pub use self::radius::Radius;
+pub use self::setting::{AsCase, Case, Setting};
 pub use self::surroundings::Changes;
-
-/// Where stability is lost on both sides of a setting.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// The value below; that of the parameter's range where it is not lost.
-    pub lower: f64,
-    /// The value above; infinite where it is not lost.
-    pub upper: f64,
-}
-
-impl Limits {
-    const UNDECIDED: Self = Self {
-        lower: f64::NAN,
-        upper: f64::NAN,
-    };
-}
-
-/// Margins of the loop: (1) of the module.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LoopMargins {
-    /// In radians; infinite where |L| is 1 nowhere.
-    pub phase: f64,
-    /// In units of √(M/κ); infinite where no latency matters.
-    pub latency: f64,
-}
-
-/// A setting whose margins are asked for, in dimensionless numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Setting {
-    /// b, a_v and a_n.
-    pub groups: Groups,
-    /// τ ≥ 0, in units of √(M/κ).
-    pub tau: f64,
-    /// σ ≥ 0, the required decay rate, in their inverse.
-    pub decay: f64,
-}
 
 /// Searches for margins, with the room that they share.
 ///
@@ -121,76 +97,50 @@ pub struct Reach {
     pub latency: f64,
 }
 
-impl Setting {
+impl Case {
     /// Up to where upper limits are looked for.
     #[must_use]
     pub fn reach(&self) -> Reach {
-        let endless = f64::INFINITY;
+        let (endless, setting) = (f64::INFINITY, &self.setting);
         let searched = |search: bool, to: f64| if search { to } else { endless };
-        let bounded = self.idle() || highest_with_gain(self).is_finite();
+        let highest = match &self.beyond {
+            Some(beyond) => Equations::new(setting, beyond).highest_with_gain(),
+            None => Line::of(setting).highest_with_gain(),
+        };
+        let bounded = setting.idle() || highest.is_finite();
         Reach {
             gain: searched(!bounded, MOST_GAINS),
             delay: searched(
-                self.decay > 0.0 && !self.groups.uncontrolled(),
+                setting.decay > 0.0 && !setting.groups.uncontrolled(),
                 along::longest_delay(self),
             ),
             latency: searched(
-                self.decay > 0.0 && !self.idle(),
-                along::longest_latency(self),
+                setting.decay > 0.0 && !setting.idle(),
+                along::longest_latency(setting.decay),
             ),
         }
-    }
-
-    /// Whether all roots are left of the line, beyond doubt.
-    #[must_use]
-    pub fn stable(&self) -> bool {
-        is_stable(self.groups, self.tau, self.decay)
-    }
-
-    fn line(&self) -> Line {
-        let Self { groups, tau, decay } = *self;
-        Line { groups, tau, decay }
-    }
-
-    /// No control acts, whatever its gains and its phase are.
-    fn idle(&self) -> bool {
-        self.groups.uncontrolled() || self.tau == 0.0
-    }
-
-    /// Whether all roots are left of the line; none where one is on it within rounding.
-    fn stability(&self) -> Option<bool> {
-        stability(self.groups, self.tau, self.decay)
-    }
-
-    fn with_gains(&self, factor: f64) -> Self {
-        let Groups { b, a_v, a_n } = self.groups;
-        let groups = Groups::new(b, factor * a_v, factor * a_n);
-        Self { groups, ..*self }
-    }
-
-    fn with_slope(&self, b: f64) -> Self {
-        let groups = Groups { b, ..self.groups };
-        Self { groups, ..*self }
     }
 }
 
 impl Margins {
     /// The gain margin: the factors of both gains at which stability is lost. 0 below where any
     /// smaller gain is stable too.
-    pub fn gain(&mut self, setting: &Setting) -> Limits {
-        let free = Limits {
-            lower: 0.0,
-            upper: f64::INFINITY,
-        };
-        if setting.idle() {
-            return free;
+    pub fn gain(&mut self, of: &impl AsCase) -> Limits {
+        let case = of.case();
+        if case.setting.idle() {
+            return Limits {
+                lower: 0.0,
+                upper: f64::INFINITY,
+            };
         }
-        self.gain_limits(setting)
+        match &case.beyond {
+            Some(beyond) => self.gain_limits(&case, &Equations::new(&case.setting, beyond)),
+            None => self.gain_limits(&case, &Line::of(&case.setting)),
+        }
     }
 
-    fn gain_limits(&mut self, setting: &Setting) -> Limits {
-        let line = setting.line();
-        let highest = highest_with_gain(setting);
+    fn gain_limits(&mut self, case: &Case, line: &impl OnLine) -> Limits {
+        let highest = line.highest_with_gain();
         let f = line.gain();
         // The greatest factor whose crossings are all among those found.
         let mut most = if highest.is_finite() {
@@ -209,21 +159,21 @@ impl Margins {
                     changes.push(factor);
                 }
             };
-            if self.intervals.zeros(f, (0.0, end), &mut keep) == Err(TooMany) {
+            if self.intervals.zeros(&f, (0.0, end), &mut keep) == Err(TooMany) {
                 return Limits {
                     lower: lower.unwrap_or(f64::NAN),
                     upper: f64::NAN,
                 };
             }
             // A real root on the line; on the imaginary axis there is none.
-            if setting.decay > 0.0 {
+            if case.setting.decay > 0.0 {
                 keep(0.0);
             }
             let search = Search {
                 changes: &self.changes,
                 from: 1.0,
-                stable: |factor: f64| setting.with_gains(factor).stability(),
-                sure: setting.decay == 0.0,
+                stable: |factor: f64| case.stability_with_gains(factor),
+                sure: case.setting.decay == 0.0,
             };
             let below = || search.nearest(Side::Below, 0.0).unwrap_or(0.0);
             let lower = *lower.get_or_insert_with(below);
@@ -239,8 +189,15 @@ impl Margins {
     }
 
     /// The slopes b at which stability is lost, μ_K fixed; −∞ below where it never is.
-    pub fn slope(&mut self, setting: &Setting) -> Limits {
-        let line = setting.line();
+    pub fn slope(&mut self, of: &impl AsCase) -> Limits {
+        let case = of.case();
+        match &case.beyond {
+            Some(beyond) => self.slope_limits(&case, &Equations::new(&case.setting, beyond)),
+            None => self.slope_limits(&case, &Line::of(&case.setting)),
+        }
+    }
+
+    fn slope_limits(&mut self, case: &Case, line: &impl OnLine) -> Limits {
         let f = line.slope();
         self.changes.clear();
         let changes = &mut self.changes;
@@ -251,17 +208,17 @@ impl Margins {
             }
         };
         let end = line.slope_bound();
-        if self.intervals.zeros(f, (0.0, end), &mut keep).is_err() {
+        if self.intervals.zeros(&f, (0.0, end), &mut keep).is_err() {
             return Limits::UNDECIDED;
         }
-        if setting.decay > 0.0 {
+        if case.setting.decay > 0.0 {
             keep(0.0);
         }
         let search = Search {
             changes: &self.changes,
-            from: setting.groups.b,
-            stable: |b: f64| setting.with_slope(b).stability(),
-            sure: setting.decay == 0.0,
+            from: case.setting.groups.b,
+            stable: |b: f64| case.stability_with_slope(b),
+            sure: case.setting.decay == 0.0,
         };
         let nearest = |side, last: f64| search.nearest(side, last).unwrap_or(last);
         Limits {
@@ -271,8 +228,18 @@ impl Margins {
     }
 
     /// The phase margin and the latency margin.
-    pub fn of_loop(&mut self, setting: &Setting) -> LoopMargins {
-        let line = setting.line();
+    pub fn of_loop(&mut self, of: &impl AsCase) -> LoopMargins {
+        let case = of.case();
+        match &case.beyond {
+            Some(beyond) => LoopMargins {
+                phase: self.phase(&case),
+                latency: along::latency(&case, beyond),
+            },
+            None => self.of_letters_loop(&case.setting),
+        }
+    }
+
+    fn of_letters_loop(&mut self, setting: &Setting) -> LoopMargins {
         let mut margins = LoopMargins {
             phase: f64::INFINITY,
             latency: f64::INFINITY,
@@ -280,15 +247,14 @@ impl Margins {
         if setting.idle() {
             return margins;
         }
-        let end = line.unit_loop_bound();
-        let searched = self.intervals.zeros(line.unit_loop(), (0.0, end), |omega| {
-            let angle = arg(line.negative_loop(omega));
+        let line = Line::of(setting);
+        let searched = self.unit_loop(&line, |omega, angle| {
             margins.phase = margins.phase.min(angle.abs());
             let ahead = if angle > 0.0 { angle } else { angle + TAU };
             margins.latency = margins.latency.min(ahead / omega);
         });
         if setting.decay > 0.0 {
-            margins.latency = latency_with_decay(setting);
+            margins.latency = along::latency_with_decay(&setting.case());
         }
         if searched.is_err() {
             margins.phase = f64::NAN;
@@ -296,46 +262,73 @@ impl Margins {
         }
         margins
     }
+
+    /// The latency margin alone. Beyond the letter it counts from no latency, with all else as it
+    /// is, and is 0 where that is not stable.
+    pub fn latency(&mut self, of: &impl AsCase) -> f64 {
+        let case = of.case();
+        match &case.beyond {
+            Some(beyond) => along::latency(&case, beyond),
+            None => self.of_letters_loop(&case.setting).latency,
+        }
+    }
+
+    /// The phase margin alone.
+    pub fn phase(&mut self, of: &impl AsCase) -> f64 {
+        let case = of.case();
+        if case.setting.idle() {
+            return f64::INFINITY;
+        }
+        match &case.beyond {
+            Some(beyond) => self.least_phase(&Equations::new(&case.setting, beyond)),
+            None => self.least_phase(&Line::of(&case.setting)),
+        }
+    }
+
+    fn least_phase(&mut self, line: &impl OnLine) -> f64 {
+        let mut phase = f64::INFINITY;
+        match self.unit_loop(line, |_, angle| phase = phase.min(angle.abs())) {
+            Ok(()) => phase,
+            Err(TooMany) => f64::NAN,
+        }
+    }
+
+    /// Tells `each` the frequencies at which |L| = 1, and arg(−L) there.
+    fn unit_loop(
+        &mut self,
+        line: &impl OnLine,
+        mut each: impl FnMut(f64, f64),
+    ) -> Result<(), TooMany> {
+        let end = line.unit_loop_bound();
+        self.intervals
+            .zeros(&line.unit_loop(), (0.0, end), |omega| {
+                each(omega, arg(line.negative_loop(omega)));
+            })
+    }
 }
 
 /// The stability radius in gain, delay and slope.
 #[must_use]
-pub fn radius(setting: &Setting) -> Radius {
-    let around = Surroundings {
-        line: setting.line(),
-        third: Third::Slope,
-    };
-    around.radius(1.0)
+pub fn radius(of: &impl AsCase) -> Radius {
+    radius_up_to(of, 1.0)
 }
 
 /// The stability radius in gain, delay and slope, or `most` < 1 where it is larger.
 #[must_use]
-pub fn radius_up_to(setting: &Setting, most: f64) -> Radius {
+pub fn radius_up_to(of: &impl AsCase, most: f64) -> Radius {
     let around = Surroundings {
-        line: setting.line(),
+        case: of.case(),
         third: Third::Slope,
     };
     around.radius(most)
 }
 
-/// The stability radius in gain, delay and sliding velocity; `setting` is the one at `v0`.
+/// The stability radius in gain, delay and sliding velocity; the setting is the one at `v0`.
 #[must_use]
-pub fn radius_with_law(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Radius {
+pub fn radius_with_law(of: &impl AsCase, law: &SlidingLaw<'_>, v0: f64) -> Radius {
     let around = Surroundings {
-        line: setting.line(),
+        case: of.case(),
         third: Third::Velocity(v0, *law),
     };
     around.radius(1.0)
-}
-
-/// No crossing at any factor of the gains has a frequency beyond this: on the imaginary axis P_r =
-/// c − a_n x has to be positive, c = a_n + a_v b.
-fn highest_with_gain(setting: &Setting) -> f64 {
-    let Groups { b, a_v, a_n } = setting.groups;
-    let c = a_n + a_v * b;
-    match setting.decay {
-        0.0 if a_n > 0.0 => (c / a_n).max(0.0).sqrt(),
-        0.0 if a_n == 0.0 && c <= 0.0 => 0.0,
-        _ => f64::INFINITY,
-    }
 }

@@ -14,9 +14,13 @@ const MOST_STEPS: u32 = 48;
 const MOST_ASTRAY: u32 = 3;
 /// Steps along a direction when settings that are not stable are looked for.
 const STEPS: u32 = 48;
+/// The same beyond the letter, where the count takes ten times as long.
+const STEPS_BEYOND: u32 = 12;
 
 /// Finding the crossings of a setting takes as long as enclosing D so many times.
 const WORK_OF_CROSSINGS: u32 = 4;
+/// The same beyond the letter.
+const WORK_OF_CROSSINGS_BEYOND: u32 = 16;
 
 impl Surroundings<'_> {
     /// A setting that is not stable near `here`, or near a `candidate` for a zero of D (ω and
@@ -31,8 +35,11 @@ impl Surroundings<'_> {
         if largest(here) >= bound {
             return None;
         }
-        let lost = (self.line.decay == 0.0).then(|| {
-            *work += WORK_OF_CROSSINGS;
+        let lost = (self.case.setting.decay == 0.0).then(|| {
+            *work += match self.case.beyond {
+                Some(_) => WORK_OF_CROSSINGS_BEYOND,
+                None => WORK_OF_CROSSINGS,
+            };
             self.delay_lost(here)
         });
         let nearer = |found: &Changes| largest(*found) < bound;
@@ -50,7 +57,11 @@ impl Surroundings<'_> {
     /// sliding is not stable.
     fn delay_lost(&self, [gain, _, third]: Changes) -> Option<Changes> {
         let (groups, tau) = self.changed([gain, 0.0, third]);
-        let change = match Crossings::of(groups).stable_interval_at(tau) {
+        let interval = match &self.case.beyond {
+            Some(beyond) => beyond.stable_interval_at(groups, tau),
+            None => Crossings::of(groups).stable_interval_at(tau),
+        };
+        let change = match interval {
             None => 0.0,
             Some(_) if tau == 0.0 => return None,
             Some(found) => {
@@ -129,8 +140,12 @@ impl Surroundings<'_> {
             }
             let most = nearest.map_or(limit, largest);
             let along = |s: f64| direction.map(|d| s * d);
-            let steps = (1..=STEPS).map(|i| most * f64::from(i) / f64::from(STEPS));
-            if let Some(s) = steps.into_iter().find(|s| !self.stable(along(*s))) {
+            let steps = match self.case.beyond {
+                Some(_) => STEPS_BEYOND,
+                None => STEPS,
+            };
+            let mut steps = (1..=steps).map(|i| most * f64::from(i) / f64::from(steps));
+            if let Some(s) = steps.find(|s| !self.stable(along(*s))) {
                 let found = self.shortened(along(s));
                 if nearest.is_none_or(|n| largest(found) < largest(n)) {
                     nearest = Some(found);

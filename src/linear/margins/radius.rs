@@ -16,6 +16,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::crossing_delays::Delays;
+use super::setting::Setting;
 use super::surroundings::{ALL, Changes, DELAY, JUMP, Sides, Surroundings, largest};
 use crate::model::elementary::exp;
 
@@ -41,6 +42,8 @@ pub struct Radius {
 
 /// A side of a box matters by its own width up to so many times what D's zeros move along it.
 const MATTERS: f64 = 8.0;
+/// Boxes end at this part of a change of the delay at which roots accumulate at the line.
+const BEFORE_ACCUMULATION: f64 = 1.0 - 1e-3;
 /// Jumps of the slope lie within this part of their distance.
 const CONFINED: f64 = 1e-3;
 #[derive(Debug, Clone, Copy)]
@@ -84,9 +87,16 @@ impl Surroundings<'_> {
     /// The stability radius of a setting that is stable, at most `limit`.
     pub(super) fn radius(&self, limit: f64) -> Radius {
         let fixed = self.fixed();
-        let mut unstable = self.nearest_along_directions(fixed, limit);
+        let last = self.accumulation().filter(|last| *last <= limit);
+        let mut unstable = self
+            .nearest_along_directions(fixed, last.unwrap_or(limit))
+            .or_else(|| last.map(|change| [0.0, change, 0.0]));
         let mut bound = unstable.map_or(limit, largest);
-        let most = bound;
+        // At the delay where roots accumulate at the line none of them is the highest.
+        let most = match last {
+            Some(last) => bound.min(BEFORE_ACCUMULATION * last),
+            None => bound,
+        };
         let side = |fixed: bool| if fixed { (0.0, 0.0) } else { (-most, most) };
         let [gain, delay, third] = fixed.map(side);
         let whole = [
@@ -100,7 +110,7 @@ impl Surroundings<'_> {
         let (mut proved, mut work) = (0.0, 0);
         loop {
             let Some(part) = parts.pop().filter(|part| part.distance < bound) else {
-                proved = bound;
+                proved = bound.min(most);
                 break;
             };
             proved = part.distance.max(proved);
@@ -133,6 +143,15 @@ impl Surroundings<'_> {
         }
     }
 
+    /// The relative change of the delay at which infinitely many roots come to the line; none where
+    /// they never do.
+    fn accumulation(&self) -> Option<f64> {
+        let Setting { groups, tau, decay } = self.case.setting;
+        let beyond = self.case.beyond?;
+        let acts = decay > 0.0 && tau > 0.0 && beyond.memory != 0.0 && !groups.uncontrolled();
+        acts.then(|| beyond.last_delay(decay) / tau - 1.0)
+    }
+
     /// A box, in which nothing is nearer than `at_least`; none where D cannot vanish on it.
     fn part(&self, sides: Sides, at_least: f64) -> Option<Part> {
         let point = self.point(sides)?;
@@ -140,14 +159,14 @@ impl Surroundings<'_> {
         if !over.value.may_vanish() {
             return None;
         }
-        let tau = self.line.tau;
+        let tau = self.case.setting.tau;
         let known = match tau {
             0.0 => Delays::Unknown,
             tau => point.crossing_delays(tau),
         };
         if matches!(known, Delays::Unknown) {
-            let shortest = self.line.tau * (1.0 + sides[DELAY].0);
-            let least = exp(self.line.decay * shortest) * (1.0 - 1e-12);
+            let shortest = tau * (1.0 + sides[DELAY].0);
+            let least = exp(self.case.setting.decay * shortest) * (1.0 - 1e-12);
             if !point.reaches(least) {
                 return None;
             }

@@ -1,10 +1,9 @@
 //! The settings around a setting: what D depends on there, and which of them are stable.
 
 use super::affine::Affine;
+use super::beyond::UpTo;
 use super::enclosure::{Point, SlidingLaw, Slope, root_bound};
-use super::equations::Line;
-use crate::linear::certificate::roots_right_of;
-use crate::linear::{Crossings, MarginalTolerance};
+use super::setting::{Case, Setting};
 use crate::model::Groups;
 use crate::model::elementary::exp;
 
@@ -21,7 +20,7 @@ pub(super) enum Third<'a> {
 
 /// A setting and the settings around it.
 pub(super) struct Surroundings<'a> {
-    pub line: Line,
+    pub case: Case,
     pub third: Third<'a>,
 }
 
@@ -48,7 +47,7 @@ pub(super) fn largest(changes: Changes) -> f64 {
 impl Surroundings<'_> {
     /// The groups and the delay of a changed setting.
     pub(super) fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
-        let Line { groups, tau, .. } = self.line;
+        let Setting { groups, tau, .. } = self.case.setting;
         let Groups { b, a_n, .. } = match self.third {
             Third::Slope => Groups {
                 b: groups.b * (1.0 + third),
@@ -65,21 +64,21 @@ impl Surroundings<'_> {
     /// Whether a changed setting is stable beyond doubt.
     pub(super) fn stable(&self, changes: Changes) -> bool {
         let (groups, tau) = self.changed(changes);
-        is_stable(groups, tau, self.line.decay)
+        self.case.stability_at(groups, tau) == Some(true)
     }
 
     pub(super) fn fixed(&self) -> [bool; 3] {
-        let Groups { b, .. } = self.line.groups;
+        let Setting { groups, tau, .. } = self.case.setting;
         let third = match self.third {
-            Third::Slope => b == 0.0,
+            Third::Slope => groups.b == 0.0,
             Third::Velocity(v0, _) => v0 == 0.0,
         };
-        [self.line.groups.uncontrolled(), self.line.tau == 0.0, third]
+        [groups.uncontrolled(), tau == 0.0, third]
     }
 
     /// What D depends on, over a box; none where that is empty.
     pub(super) fn point(&self, [omega, gain, delay, third, slope]: Sides) -> Option<Point<ALL>> {
-        let Line { groups, tau, decay } = self.line;
+        let Setting { groups, tau, decay } = self.case.setting;
         let from_one = |(a, b): (f64, f64)| (1.0 + a, 1.0 + b);
         let factor = Affine::between(from_one(gain), 1);
         let (b, a_n) = match self.third {
@@ -106,6 +105,7 @@ impl Surroundings<'_> {
             a_v: groups.a_v,
             latency: None,
             law: matches!(self.third, Third::Velocity(..)).then_some(3),
+            beyond: self.case.beyond,
         })
     }
 
@@ -120,26 +120,22 @@ impl Surroundings<'_> {
 
     /// No root is on the line beyond this ω while all changes are at most `most`.
     pub(super) fn highest(&self, most: f64) -> f64 {
-        let Line { groups, tau, decay } = self.line;
+        let Setting { groups, tau, decay } = self.case.setting;
         let (b, a_n) = match self.third {
             Third::Slope => (groups.b * (1.0 + most), groups.a_n),
             Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
         };
+        if let Some(beyond) = &self.case.beyond {
+            let up_to = UpTo {
+                b,
+                a_v: groups.a_v * (1.0 + most),
+                a_n: a_n * (1.0 + most),
+                tau: tau * (1.0 + most),
+                latency: beyond.latency,
+            };
+            return beyond.highest(up_to, decay);
+        }
         let control = (1.0 + most) * (1.0 + exp(decay * tau * (1.0 + most)));
         root_bound(b, groups.a_v, a_n, control) * (1.0 + 1e-12)
     }
-}
-
-/// Whether a setting is stable beyond doubt, all its roots left of Re λ = −`decay`.
-pub(super) fn is_stable(groups: Groups, tau: f64, decay: f64) -> bool {
-    stability(groups, tau, decay) == Some(true)
-}
-
-/// Whether all roots are left of Re λ = −`decay`; none where one is on that line within rounding.
-pub(super) fn stability(groups: Groups, tau: f64, decay: f64) -> Option<bool> {
-    if decay == 0.0 {
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        return (!count.marginal).then_some(count.n_unstable == 0);
-    }
-    roots_right_of(groups, tau, -decay).map(|roots| roots == 0)
 }

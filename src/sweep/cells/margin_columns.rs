@@ -11,9 +11,7 @@ use crate::sweep::input::source::{OfMargins, Source};
 /// Fills the columns of one thread's tiles.
 pub(super) struct MarginColumns {
     search: Margins,
-    gain: bool,
-    of_loop: bool,
-    radius: bool,
+    wanted: Vec<OfMargins>,
 }
 
 /// The margins of a cell; NaN for those that are not requested.
@@ -43,54 +41,61 @@ const UNSTABLE: Found = Found {
 impl MarginColumns {
     /// The columns for these fields; none without a margin.
     pub(super) fn new(fields: &[Field]) -> Option<Self> {
-        use OfMargins::{GainLower, GainUpper, Latency, Phase, StabilityRadius};
-        let wants = |wanted: &[OfMargins]| {
-            let of = |field: &Field| match field.source() {
-                Source::Margins(of) => wanted.contains(&of),
-                _ => false,
-            };
-            fields.iter().any(of)
-        };
+        let wanted = fields.iter().filter_map(|field| match field.source() {
+            Source::Margins(of) => Some(of),
+            _ => None,
+        });
         let columns = Self {
             search: Margins::default(),
-            gain: wants(&[GainLower, GainUpper]),
-            of_loop: wants(&[Phase, Latency]),
-            radius: wants(&[StabilityRadius]),
+            wanted: wanted.collect(),
         };
-        (columns.gain || columns.of_loop || columns.radius).then_some(columns)
+        (!columns.wanted.is_empty()).then_some(columns)
+    }
+
+    fn wants(&self, of: OfMargins) -> bool {
+        self.wanted.contains(&of)
     }
 
     /// Computes the cells of a line. The status gains [`NOT_CONVERGED`] where a search was given
-    /// up.
-    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+    /// up. Beyond the letter's own feedback the latency margin is told with the line itself.
+    pub(super) fn fill(&mut self, line: &SlowLine, letter: bool, buffers: &mut TileBuffers) {
+        let besides = |of: &OfMargins| *of != OfMargins::Latency;
+        if !letter && !self.wanted.iter().any(besides) {
+            return;
+        }
         line.each(|here| {
-            let found = self.at(&here);
+            let found = self.at(&here, letter);
             if found.gave_up {
                 buffers.status[here.place] |= NOT_CONVERGED;
             }
             buffers.put(here.place, |field| match field.source() {
+                Source::Margins(OfMargins::Latency) if !letter => None,
                 Source::Margins(of) => Some(found.value(of)),
                 _ => None,
             });
         });
     }
 
-    fn at(&mut self, here: &Here) -> Found {
+    fn at(&mut self, here: &Here, letter: bool) -> Found {
         let around = Around::of(here.setting, 0.0);
         // The line was accepted, so its parameters are within the model's range.
         let Some(around) = around.ok().filter(Around::stable) else {
             return UNSTABLE;
         };
         let mut found = UNSTABLE;
-        if self.gain {
+        if self.wants(OfMargins::GainLower) || self.wants(OfMargins::GainUpper) {
             found.gain = around.gain(&mut self.search);
             found.gave_up |= found.gain.lower.is_nan() || found.gain.upper.is_nan();
         }
-        if self.of_loop {
+        let phase = self.wants(OfMargins::Phase);
+        if letter && (phase || self.wants(OfMargins::Latency)) {
             found.of_loop = around.of_loop(&mut self.search);
             found.gave_up |= found.of_loop.phase.is_nan();
+        } else if phase {
+            found.of_loop.phase = around.phase(&mut self.search);
+            found.gave_up |= found.of_loop.phase.is_nan();
         }
-        if self.radius {
+        if self.wants(OfMargins::StabilityRadius) {
             let radius = around.radius();
             found.radius = radius.proved;
             found.gave_up |= !radius.tight;

@@ -1,7 +1,9 @@
 //! Margins of a setting, in its own units.
 
+use crate::linear::general::{DelayLine, System};
 use crate::linear::margins::{
-    self, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach, SlidingLaw,
+    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach,
+    SlidingLaw,
 };
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator};
 use crate::sweep::input::parameter::Parameter;
@@ -10,7 +12,10 @@ use crate::sweep::input::setting::Setting;
 /// A setting and the decay required of it.
 #[derive(Debug, Clone)]
 pub struct Around {
-    of: margins::Setting,
+    of: Case,
+    /// The system and the delay, physical, where the delay alone decides on stability beyond the
+    /// letter.
+    line: Option<(System, f64)>,
     oscillator: Oscillator,
     control: Control,
     /// The friction law and v0, where there is a law.
@@ -23,15 +28,32 @@ impl Around {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn of(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
-        let (groups, time_unit) = setting.groups()?;
+        // Nothing is known of systems from files, and with a state the slope does not say all.
+        setting.check_of_letter(&[], "")?;
+        let oscillator = setting.oscillator()?;
+        let control = setting.control();
+        let groups = oscillator.groups(setting.sliding_point()?, control);
+        let time_unit = oscillator.time_unit();
+        let time = |parameter| setting.get(parameter) / time_unit;
+        let of = margins::Setting {
+            groups,
+            tau: time(Parameter::Tau),
+            decay: decay * time_unit,
+        };
+        let extended = setting.beyond_letter(&Parameter::BEYOND_LETTER);
+        let beyond = extended.map(|_| Beyond {
+            memory: setting.get(Parameter::Memory),
+            latency: time(Parameter::Latency),
+            load_lag: time(Parameter::LoadLag),
+            velocity_lag: time(Parameter::VelocityLag),
+            sensor_lag: time(Parameter::SensorLag),
+        });
+        let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Self {
-            of: margins::Setting {
-                groups,
-                tau: setting.get(Parameter::Tau) / time_unit,
-                decay: decay * time_unit,
-            },
-            oscillator: setting.oscillator()?,
-            control: setting.control(),
+            of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),
+            line: on_axis.map(|beyond| (beyond.system(groups), setting.get(Parameter::Tau))),
+            oscillator,
+            control,
             law: setting
                 .friction_law()?
                 .map(|law| (law, setting.get(Parameter::V0))),
@@ -58,10 +80,37 @@ impl Around {
         }
     }
 
+    /// Whether feedback has more than the letter's own.
+    #[must_use]
+    pub fn beyond_letter(&self) -> bool {
+        self.of.is_beyond()
+    }
+
+    /// The latency margin alone, in units of time.
+    pub fn latency(&self, search: &mut Margins) -> f64 {
+        search.latency(&self.of) * self.oscillator.time_unit()
+    }
+
+    /// The phase margin alone.
+    pub fn phase(&self, search: &mut Margins) -> f64 {
+        search.phase(&self.of)
+    }
+
     /// The delays at which stability is lost.
     #[must_use]
     pub fn delay(&self) -> Limits {
-        scaled(margins::delay(&self.of), self.oscillator.time_unit())
+        let unit = self.oscillator.time_unit();
+        let Some((system, tau)) = &self.line else {
+            return scaled(margins::delay(&self.of), unit);
+        };
+        // As all that is told of the delays of a system.
+        let line = DelayLine::of(system).in_physical_time(unit);
+        let mut intervals = line.stable_intervals();
+        let around = intervals.find(|i| *tau < i.to).filter(|i| i.from <= *tau);
+        around.map_or(Limits::UNDECIDED, |found| Limits {
+            lower: found.from,
+            upper: found.to,
+        })
     }
 
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.

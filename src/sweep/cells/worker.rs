@@ -161,22 +161,22 @@ impl<'p> Worker<'p> {
                 self.by_delay = Some(one);
                 return;
             }
-            let groups = match self.lines.model() {
+            let of_letter = match self.lines.model() {
                 _ if !self.slides => {
                     self.fill_without_sliding(at);
                     None
                 }
                 Ok((LinearModel::Letter(groups), time_unit)) => {
                     self.fill_line(groups, time_unit, at);
-                    Some(groups)
+                    Some(true)
                 }
                 Ok((LinearModel::General(system), time_unit)) => {
                     self.fill_general(&system, time_unit, at, stop);
-                    None
+                    Some(false)
                 }
                 Err(_) => return self.refuse_line(at),
             };
-            self.fill_slowly(&tile.offset, inside, at, groups, stop);
+            self.fill_slowly(&tile.offset, inside, at, of_letter, stop);
         });
         !self.is_slow() || !stop.load(Ordering::Relaxed)
     }
@@ -364,14 +364,13 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes margins and the fields of motions and of the critical velocity, in a line with
-    /// known statuses. Motions need a sliding state; margins need the letter's own, with its
-    /// groups.
+    /// known statuses. Motions need a sliding state.
     fn fill_slowly(
         &mut self,
         offset: &[usize],
         inside: &[usize],
         at: usize,
-        groups: Option<Groups>,
+        of_letter: Option<bool>,
         stop: &AtomicBool,
     ) {
         if !self.is_slow() {
@@ -394,8 +393,8 @@ impl<'p> Worker<'p> {
             },
             stop,
         };
-        if let (Some(margins), Some(_)) = (&mut self.margins, groups) {
-            margins.fill(&line, &mut self.buffers);
+        if let (Some(margins), Some(letter)) = (&mut self.margins, of_letter) {
+            margins.fill(&line, letter, &mut self.buffers);
         }
         if let (Some(slip), true) = (&mut self.slip, self.slides) {
             slip.fill(&line, &mut self.buffers);

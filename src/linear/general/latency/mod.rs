@@ -42,6 +42,15 @@ impl System {
         self.late().map_or(0.0, |f| f.latency)
     }
 
+    /// A frequency beyond which no root lies on Re λ = `line` at the delay `tau` ≥ 0, for these
+    /// gains and smaller ones. None where roots accumulate there or right of it, and for systems
+    /// that are not in feedback form.
+    pub(in crate::linear) fn highest_on_line(&self, tau: f64, line: f64) -> Option<f64> {
+        let on_line = OnLine::new(self.feedback.as_ref()?, tau, line)?;
+        let apart = on_line.right_of_essential()?;
+        apart.then(|| on_line.window().to)
+    }
+
     /// The same system with the latency `latency` ≥ 0; none where it is not in feedback form.
     #[must_use]
     pub fn with_latency(&self, latency: f64) -> Option<Self> {

@@ -25,30 +25,39 @@ pub(crate) fn before_zeros(f: &Polynomial) -> f64 {
 /// A frequency beyond which `f`, a polynomial in x = ω² with a positive highest coefficient, has no
 /// zero; a good one.
 pub(crate) fn beyond_zeros(f: &Polynomial) -> f64 {
-    let n = f.degree();
-    let leading = f.leading().value - f.leading().error;
-    // Kioustelidis: twice the largest (−c_k/c_n)^(1/(n − k)).
-    let bound = (0..n)
-        .map(|k| (k, f.coefficient(k)))
-        .map(|(k, c)| (n - k, c.error - c.value))
-        .filter(|(_, c)| *c > 0.0)
-        .map(|(order, c)| rough_root(c / leading, order))
-        .fold(0.0, f64::max);
-    if bound == 0.0 {
-        return 0.0;
-    }
-    let mut lowest = [0.0; MOST_DEGREE + 1];
-    for (k, lowest) in lowest[..=n].iter_mut().enumerate() {
-        *lowest = f.coefficient(k).value - f.coefficient(k).error;
-    }
-    let mut x = 2.0 * bound * (1.0 + 1e-6);
-    for _ in 0..MOST_STEPS {
-        if !positive_beyond(&lowest[..=n], NEARER * x) {
-            break;
+    f.beyond_zeros().sqrt() * (1.0 + 1e-12)
+}
+
+impl Polynomial {
+    /// An x > 0 beyond which it has no zero, or 0, its highest coefficient being positive; a good
+    /// one.
+    pub(in crate::linear) fn beyond_zeros(&self) -> f64 {
+        let f = self;
+        let n = f.degree();
+        let leading = f.leading().value - f.leading().error;
+        // Kioustelidis: twice the largest (−c_k/c_n)^(1/(n − k)).
+        let bound = (0..n)
+            .map(|k| (k, f.coefficient(k)))
+            .map(|(k, c)| (n - k, c.error - c.value))
+            .filter(|(_, c)| *c > 0.0)
+            .map(|(order, c)| rough_root(c / leading, order))
+            .fold(0.0, f64::max);
+        if bound == 0.0 {
+            return 0.0;
         }
-        x *= NEARER;
+        let mut lowest = [0.0; MOST_DEGREE + 1];
+        for (k, lowest) in lowest[..=n].iter_mut().enumerate() {
+            *lowest = f.coefficient(k).value - f.coefficient(k).error;
+        }
+        let mut x = 2.0 * bound * (1.0 + 1e-6);
+        for _ in 0..MOST_STEPS {
+            if !positive_beyond(&lowest[..=n], NEARER * x) {
+                break;
+            }
+            x *= NEARER;
+        }
+        x
     }
-    x.sqrt() * (1.0 + 1e-12)
 }
 
 /// By Budan's theorem a polynomial has no zero beyond `x` where all its Taylor coefficients are

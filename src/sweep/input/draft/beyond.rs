@@ -5,7 +5,6 @@ use std::ops::Range;
 use super::Draft;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::law_kind::Formula;
-use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::NOT_IN_MOTIONS;
 use crate::sweep::input::spec::beyond_letter;
@@ -19,19 +18,11 @@ impl Draft {
     pub(super) fn check_beyond_letter(&self, fixed: &Setting) -> Result<(), SpecError> {
         self.check_motions_are_known(fixed)?;
         let law = fixed.law().filter(|law| law.has_state());
-        let beyond = match (
-            law,
-            beyond_letter(fixed, &self.axes, &Parameter::BEYOND_LETTER),
-        ) {
-            (_, Some(parameter)) => parameter.name().to_owned(),
-            (Some(law), None) => format!("the {} law", law.name()),
-            (None, None) => return Ok(()),
-        };
-        match self.of_letter_alone(law.is_some()) {
-            Some((what, place)) => {
-                let message = format!("{what} cannot be had with {beyond}");
-                Err(SpecError::at(place, message)
-                    .help(format!("leave it out, or {beyond}; {LINEAR}")))
+        match law.zip(self.of_slope()) {
+            Some((law, (what, place))) => {
+                let law = format!("the {} law", law.name());
+                let message = format!("{what} cannot be had with {law}");
+                Err(SpecError::at(place, message).help(format!("leave it out, or {law}; {LINEAR}")))
             }
             None => Ok(()),
         }
@@ -55,16 +46,14 @@ impl Draft {
         }
     }
 
-    /// The first request that is supported for the letter's own feedback only, with its place.
-    fn of_letter_alone(&self, with_state: bool) -> Option<(&'static str, Range<usize>)> {
-        // With a state, the slope does not describe friction completely.
+    /// The first request that is not known where friction has a state, with its place: there the
+    /// slope does not describe friction completely.
+    fn of_slope(&self) -> Option<(&'static str, Range<usize>)> {
+        let margin = |field: Field| field.of_margins() && field != Field::LatencyMargin;
         let slope = |field: Field| field == Field::DAbscissaDMuPrime;
-        let slope = self.limit.first_field(slope).filter(|_| with_state);
-        let margins = self
-            .limit
-            .first_field(|f| f.of_margins() && f != Field::LatencyMargin);
-        let asked = margins.or(slope);
-        asked.map(|(field, place)| (field.name(), place.clone()))
+        let found = self.limit.first_field(margin);
+        let found = found.or_else(|| self.limit.first_field(slope));
+        found.map(|(field, place)| (field.name(), place.clone()))
     }
 
     /// Checks that the ratio of stiffnesses is asked only of rate-and-state friction.

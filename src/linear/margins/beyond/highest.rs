@@ -1,0 +1,57 @@
+//! Frequencies beyond which no root lies on the line, over ranges of what a setting can be.
+
+use super::super::enclosure::root_bound;
+use super::feedback::Beyond;
+use crate::model::elementary::exp;
+
+/// Nearer to the highest frequency in steps of this factor.
+const NEARER: f64 = 0.8;
+/// Steps of it at most.
+const MOST_STEPS: u32 = 60;
+
+/// Ranges of what a setting can be: sizes up to these.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct UpTo {
+    pub b: f64,
+    pub a_v: f64,
+    pub a_n: f64,
+    pub tau: f64,
+    pub latency: f64,
+}
+
+impl Beyond {
+    /// No root lies on λ = −σ + iω beyond this ω, σ = `decay`; infinite where they accumulate
+    /// there.
+    ///
+    /// |B₀| ≤ c |A₀|, c = e^(σδ)(1 + e^(στ))/(1 − |R| e^(στ)), where every part of A₀ is divided by
+    /// the lags that it does not pass. |1 + Tλ|² = (1 − Tσ)² + T²ω² grows with ω, so what holds
+    /// beyond one frequency makes the next, lower one.
+    pub(in super::super) fn highest(&self, up_to: UpTo, decay: f64) -> f64 {
+        let delayed = exp(decay * up_to.tau) * (1.0 + 1e-12);
+        let kept = 1.0 - self.memory.abs() * delayed;
+        if kept.is_nan() || kept <= 0.0 {
+            return f64::INFINITY;
+        }
+        let control = exp(decay * up_to.latency) * (1.0 + delayed) / kept;
+        let beyond = |omega: f64| {
+            let lag = |time: f64| {
+                let (re, im) = (1.0 - time * decay, time * omega);
+                (re * re + im * im).sqrt()
+            };
+            let sensor = lag(self.sensor_lag);
+            let a_v = up_to.a_v.abs() / (lag(self.velocity_lag) * sensor);
+            let a_n = up_to.a_n.abs() / (lag(self.load_lag) * sensor);
+            root_bound(up_to.b, a_v, a_n, control) * (1.0 + 1e-12)
+        };
+        // A lag of exactly 1/σ is 0 at ω = 0 alone.
+        let mut highest = beyond(1.0).max(1.0);
+        for _ in 0..MOST_STEPS {
+            let lower = NEARER * highest;
+            if beyond(lower) > lower {
+                break;
+            }
+            highest = lower;
+        }
+        highest
+    }
+}

@@ -1,0 +1,21 @@
+//! Margins of the letter's control with memory, latency and lags.
+//!
+//! ```text
+//! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ),   λ = −σ + iω                            (1)
+//! B = (λ² + bλ + 1) L_a L_v L_s,   A = a_n L_v + a_v (b + λ) L_a,   L = 1 + Tλ              (2)
+//! ```
+//!
+//! - `feedback`: what such feedback has, (1) and (2), and which settings of it are stable
+//! - `equations`: where a root lies on the line, as one real equation in ω for each way in which a
+//!   setting can change
+//! - `highest`: frequencies beyond which no root lies on the line
+//! - `sum`: the left sides of these equations, which swing with several delays
+
+mod equations;
+mod feedback;
+mod highest;
+mod sum;
+
+pub(super) use self::equations::Equations;
+pub use self::feedback::Beyond;
+pub(super) use self::highest::UpTo;
