@@ -58,8 +58,8 @@ revision=$(git describe --always --dirty 2>/dev/null || echo unknown)
     printf '| bench | what it printed |\n| --- | --- |\n'
     for file in "$folder"/*.txt; do
         name=$(basename "$file" .txt)
-        # Lines that compare: they have a ratio, a share or a time for each cell.
-        grep -E '( = |times|differs|agree|mean|µs|cell by cell|tracked)' "$file" |
+        # Lines that compare: they have a ratio, a share or a time.
+        grep -E '( = |times|differs|agree|mean|µs|[0-9] us |ratio|cell by cell|tracked)' "$file" |
             grep -vE '^(warning|error| *Compiling| *Finished| *Running|==)' | sed 's/|/\\|/g' |
             while IFS= read -r line; do printf '| %s | %s |\n' "$name" "$line"; done
     done
