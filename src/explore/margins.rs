@@ -28,14 +28,14 @@ pub struct Margins {
     pub latency_margin: Option<f64>,
     /// The delays between which the setting keeps the decay rate; null where it does not have it.
     pub tau_margin: Option<Margin>,
-    /// The slopes μ_K′ between which it stays, at fixed μ_K; null where the setting has it not, and
+    /// The slopes μ_K′ between which it stays, at fixed μ_K; null where it does not have it, and
     /// where there is a friction law.
     pub mu_prime_margin: Option<Margin>,
-    /// The sliding velocities between which it stays; null where the setting has it not, and where
+    /// The sliding velocities between which it stays; null where it does not have it, and where
     /// there is no friction law.
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
-    /// the setting has it not, null where that is not known.
+    /// it does not have it, null where that is not known.
     pub stability_radius: Option<f64>,
     /// That box; null where the setting does not have the decay rate.
     pub stability_box: Option<StabilityBox>,

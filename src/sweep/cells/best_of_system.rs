@@ -85,8 +85,8 @@ fn slowest(system: &System) -> Option<f64> {
     frequencies.min_by(f64::total_cmp)
 }
 
-/// The settings of fastest decay for every stable region within `ranges`, of which `gain` is that of
-/// `searched`; everything else is as in `at`.
+/// The settings of fastest decay for every stable region within `ranges`. The range `gain` is that
+/// of `searched`; everything else is as in `at`.
 ///
 /// # Errors
 /// Where the system has no value in the middle of the ranges, or is one that is refused.
