@@ -19,8 +19,8 @@ impl DelayLine {
         }
     }
 
-    /// Why the delay `tau` ≥ 0 is special, if it is. Without delay D is a polynomial: it has finitely
-    /// many roots.
+    /// Why the delay `tau` ≥ 0 is special, if it is. Without delay D is a polynomial and has
+    /// finitely many roots.
     #[inline]
     #[must_use]
     pub fn reason_at(&self, tau: f64) -> Option<Reason> {
