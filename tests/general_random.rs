@@ -150,6 +150,56 @@ fn counts_are_what_a_walk_counts() {
     );
 }
 
+/// Without damping P and Q have zeros on the axis itself, which turn by half a turn exactly.
+#[test]
+fn counts_without_damping_are_what_a_walk_counts() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 24));
+    let (mut walked, mut undecided) = (0, 0);
+    for _ in 0..cases(20_000) / 20 {
+        // Products of s² + ω², some of them with a stable real zero.
+        let mut even = |factors: usize, leading: f64| {
+            let mut p = vec![leading];
+            for _ in 0..factors {
+                let square = chance.log(0.1, 4.0);
+                let mut next = vec![0.0; p.len() + 2];
+                for (k, c) in p.iter().enumerate() {
+                    next[k] += square * c;
+                    next[k + 2] += c;
+                }
+                p = next;
+            }
+            p
+        };
+        let p = even(1 + (walked % 3) as usize, 1.0);
+        let mut q = even((walked % 2) as usize, 1.0);
+        let ratio = chance.between(-0.9, 0.9);
+        q.iter_mut().for_each(|c| *c *= ratio);
+        let tau = chance.log(0.1, 20.0);
+        let system = System::of_coefficients(&p, &q).expect("a small degree");
+        let counter = RootCounter::new(&system);
+        let count = DelayLine::of(&system).count(tau, MarginalTolerance::default());
+        let walk = Walk {
+            terms: vec![(p, 0.0), (q, tau)],
+        };
+        let Some(expected) = walk.right_of(0.0) else {
+            continue;
+        };
+        walked += 1;
+        match counter.right_of(tau, 0.0) {
+            RightOf::Roots(n) => assert_eq!(n, expected, "{walk:?}"),
+            _ => undecided += 1,
+        }
+        if !count.marginal {
+            assert_eq!(count.n_unstable, expected, "{walk:?}");
+        }
+    }
+    println!("{walked} walked, {undecided} undecided");
+    assert!(
+        walked > 300 && undecided <= walked / 20,
+        "{walked} {undecided}"
+    );
+}
+
 /// Beside a root: the count changes by one root or one pair, or says that it does not know.
 #[test]
 fn lines_beside_a_root() {

@@ -118,9 +118,12 @@ impl Turned {
             return;
         }
         let next = (self.re * re - self.im * im, self.re * im + self.im * re);
-        if im > 0.0 && self.im >= 0.0 && next.1 < 0.0 {
+        // By the sign of zeros as well, as the arctangent has it: zeros on the line turn by half a
+        // turn exactly.
+        let [below, then_below] = [self.im, next.1].map(f64::is_sign_negative);
+        if im > 0.0 && !below && then_below {
             self.turns += 1.0;
-        } else if im < 0.0 && self.im < 0.0 && next.1 >= 0.0 {
+        } else if im < 0.0 && below && !then_below {
             self.turns -= 1.0;
         }
         (self.re, self.im) = next;
@@ -304,5 +307,24 @@ impl RootCounter {
         let ahead = rough - (angle + PI);
         let turns = (ahead / TAU).round();
         ((ahead - TAU * turns).abs() < SAME_TURN).then_some(turns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Right angles one way and back, in every order of signs: the sum is known without rounding.
+    #[test]
+    fn right_angles_add_up() {
+        for pattern in 0..1_u32 << 8 {
+            let (mut turned, mut sum) = (Turned::NOT, 0.0);
+            for bit in 0..8 {
+                let sign = if pattern >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                turned.by(0.0, sign * 0.7);
+                sum += sign * 0.5 * PI;
+                assert!((turned.angle() - sum).abs() < 1e-12, "{pattern:b} {bit}");
+            }
+        }
     }
 }
