@@ -4,8 +4,8 @@
 #   benches/peers/lobes.sh [ROUNDS] [FOLDER]
 #
 # ROUNDS is 2 unless given. FOLDER keeps the Python environment; without it that is made in a temporary folder and removed.
-# Takes about ten minutes. Needs Python 3.11 or newer with venv, and PyPI. $SLIPMAP names a program that is built
-# already; without it one is built. What is measured stands at the head of turning_lobes.py.
+# Takes about seven minutes, ten on a busy machine. Needs Python 3.11 or newer with venv, and PyPI. $SLIPMAP names a
+# program that is built already; without it one is built. What is measured stands at the head of turning_lobes.py.
 set -euo pipefail
 
 rounds=${1:-2}
