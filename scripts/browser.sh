@@ -78,10 +78,11 @@ get_peers() {
         --define:process.env.NODE_ENV='"production"' --outfile=bundled/h5web.js --log-level=error)
 }
 
-# The page without a server is tested where it was made.
+# The page without a server and the guide are tested where they were made.
 test_browser() {
     copied
     [ -n "${SLIPMAP_STATIC_PAGE:-}" ] || rm "$BROWSER_TESTS/run/static.test.mjs"
+    [ -n "${SLIPMAP_GUIDE:-}" ] || rm "$BROWSER_TESTS/run/guide.test.mjs"
     export SLIPMAP_ROOT SLIPMAP_PROGRAM=${SLIPMAP_PROGRAM:-$SLIPMAP_ROOT/target/release/slipmap}
     node --test --test-concurrency=1 --test-timeout=400000 --test-force-exit "$BROWSER_TESTS"/run/*.test.mjs
 }

@@ -137,6 +137,7 @@ check_guide() {
     have mdbook || return 0
     step mdbook build doc
     [ -s target/guide/guide/equations.html ] || die "the guide has no equation index"
+    export SLIPMAP_GUIDE=$SLIPMAP_ROOT/target/guide
 }
 
 # Advisories need the network, which may not be there; all else is in the manifests.
