@@ -150,7 +150,7 @@ fn fields(page: &mut String) {
          has `status` besides. Units are those of the sweep; \"1\" where a field has none.",
     );
     for field in Field::ALL {
-        heading(page, 3, &code(field.name()));
+        heading(page, 2, &code(field.name()));
         let stored = match field.storage() {
             Storage::Count => "integer of 16 bits",
             Storage::Kind | Storage::Few => "integer of 8 bits",
