@@ -173,7 +173,9 @@ fn counts_without_damping_are_what_a_walk_counts() {
         let p = even(1 + (walked % 3) as usize, 1.0);
         let mut q = even((walked % 2) as usize, 1.0);
         let ratio = chance.between(-0.9, 0.9);
-        q.iter_mut().for_each(|c| *c *= ratio);
+        for c in &mut q {
+            *c *= ratio;
+        }
         let tau = chance.log(0.1, 20.0);
         let system = System::of_coefficients(&p, &q).expect("a small degree");
         let counter = RootCounter::new(&system);
