@@ -947,7 +947,7 @@ fn the_compliance_checker_finds_nothing() {
 }
 
 /// What every command prints with `--json`, each kind of answer once.
-const ANSWERS: [(&str, &str); 20] = [
+const ANSWERS: [(&str, &str); 22] = [
     (
         "point.plain",
         "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
@@ -975,6 +975,8 @@ const ANSWERS: [(&str, &str); 20] = [
     ),
     ("best.velocity", "best --mu-prime=-0.3 --control velocity"),
     ("best.none", "best --mu-prime=-2 --control velocity"),
+    ("best.memory", "best --mu-prime=-0.3 --memory 0.2"),
+    ("best.system", "best --system turning --search width"),
     ("simulate.case", "simulate case.toml"),
     ("plan.sweep", "plan sweep.toml"),
     (

@@ -28,16 +28,16 @@ use super::system_args::OTHERS;
 pub(super) struct SystemBest {
     /// The parameter that is searched beside the delay.
     search: String,
-    searched: RangesOut,
-    best: OptimumOut,
-    regions: Vec<RegionOut>,
+    searched: SystemRanges,
+    best: SystemOptimum,
+    regions: Vec<SystemRegion>,
     regions_left_out: usize,
     /// All about the best setting.
     point: SystemPoint,
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-struct RangesOut {
+struct SystemRanges {
     /// Of the parameter that is searched.
     #[schema(value_type = [f64; 2])]
     value: (f64, f64),
@@ -46,21 +46,21 @@ struct RangesOut {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-struct RegionOut {
-    region: RangesOut,
+struct SystemRegion {
+    region: SystemRanges,
     #[serde(flatten)]
-    best: OptimumOut,
+    best: SystemOptimum,
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-struct OptimumOut {
+struct SystemOptimum {
     /// Of the parameter that is searched.
     value: f64,
     #[serde(flatten)]
     numbers: OptimumNumbers,
 }
 
-impl From<&Optimum> for OptimumOut {
+impl From<&Optimum> for SystemOptimum {
     fn from(found: &Optimum) -> Self {
         Self {
             value: found.gain,
@@ -69,10 +69,10 @@ impl From<&Optimum> for OptimumOut {
     }
 }
 
-impl From<&Region> for RegionOut {
+impl From<&Region> for SystemRegion {
     fn from(region: &Region) -> Self {
         Self {
-            region: RangesOut {
+            region: SystemRanges {
                 value: region.gains,
                 tau: region.delays,
             },
@@ -98,7 +98,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         let answer = SystemBest {
             search: asked.name.clone(),
-            searched: RangesOut {
+            searched: SystemRanges {
                 value: asked.ranges.gain,
                 tau: asked.ranges.tau,
             },
