@@ -317,6 +317,25 @@ mu_prime = -0.5
     }
 }
 
+/// Near |k_a| = 1 roots accumulate near the axis, and at short delays nothing is proved beside that
+/// line: no optimum is taken there.
+#[test]
+fn no_optimum_where_roots_accumulate_without_proof() {
+    let folder = Folder::new();
+    let of = |args: &str| json(&folder, &args.split(' ').collect::<Vec<_>>());
+    let neutral = of(
+        "best --system pd --set stiffness=1 --set damping=0.5 --set k_d=0.2 --search k_a \
+         --search-from=-1 --search-to 1 --tau-to 1 --json",
+    );
+    let best = &neutral["best"];
+    // With |k_a| < 0.99 it is a triple root at -4.2437.
+    assert!((-4.25..-3.9).contains(&number(&best["abscissa"])), "{best}");
+    assert_eq!(best["certified"], true);
+    // Without damping nothing decays: what rounding leaves of 0 is no decay.
+    let idle = of("best --system pd --search k_p --tau-to 1 --json");
+    assert_eq!(idle["best"]["relaxation_time"], Value::Null, "{idle}");
+}
+
 #[test]
 fn what_is_wrong_with_a_search_is_told() {
     let folder = Folder::new();

@@ -220,10 +220,12 @@ impl Latencies {
         let line = line.in_physical_time(time_unit);
         let mut intervals = line.stable_intervals();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        let margin = system.latency_margin(tau);
+        let open = margin.is_some_and(f64::is_nan);
         Self {
             stable_latencies: Some(ends(&stable)),
-            stable_latencies_truncated: intervals.next().is_some() || intervals.gave_up(),
-            margin: system.latency_margin(tau).map(|margin| margin * time_unit),
+            stable_latencies_truncated: open || intervals.next().is_some() || intervals.gave_up(),
+            margin: margin.map(|margin| margin * time_unit),
         }
     }
 }

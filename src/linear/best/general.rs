@@ -16,6 +16,9 @@ use crate::model::elementary::norm;
 const DIFFERENCE: f64 = 1e-3;
 /// The least scale of a gain, over the width of what is searched.
 const LEAST_SCALE: f64 = 1e-2;
+/// How near, relative, the line right of which nothing lies has to be to the one at which roots
+/// accumulate. Where ρ is nearly 1 or the delay nearly 0 it is too far to say anything.
+const CLOSE: f64 = 1e-3;
 /// Delays at which a line without a closed form is counted, and halvings of its ends.
 const SAMPLES: u32 = 256;
 const MOST_HALVINGS: u32 = 60;
@@ -217,10 +220,11 @@ impl Family for General<'_> {
         }
         // It may be that no root lies right of where they accumulate. This is asked last: so near
         // to that line a count takes long.
-        let beside = beside_accumulation(system, tau);
-        let none = |line| counter.right_of(tau, line) == RightOf::Roots(0);
-        match beside.filter(|&line| none(line)) {
-            Some(_) => system.essential_abscissa(tau),
+        let essential = system.essential_abscissa(tau);
+        let close = |line: &f64| line - essential <= CLOSE * essential.abs();
+        let none = |line: &f64| counter.right_of(tau, *line) == RightOf::Roots(0);
+        match beside_accumulation(system, tau).filter(|line| close(line) && none(line)) {
+            Some(_) => essential,
             None => f64::INFINITY,
         }
     }

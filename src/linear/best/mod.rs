@@ -204,7 +204,14 @@ pub fn best(search: &Search<impl Family>) -> Best {
         .map(|region| &region.best)
         .min_by(|p, q| p.abscissa.total_cmp(&q.abscissa))
         .cloned()
-        .unwrap_or_else(|| least_unstable(&mut evaluator, search));
+        .unwrap_or_else(|| {
+            let mut least = least_unstable(&mut evaluator, search);
+            // Rounding is no decay.
+            if (-least.margin..0.0).contains(&least.abscissa) {
+                least.abscissa = 0.0;
+            }
+            least
+        });
     Best {
         overall,
         regions,

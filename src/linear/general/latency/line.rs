@@ -72,6 +72,7 @@ impl DelayLine {
         let Some(on_line) = on_line.filter(|_| found) else {
             // Too many to be listed: nothing is said but what holds without latency.
             self.always_marginal = true;
+            self.open_from = 0.0;
             return;
         };
         if self.reason != Some(Reason::RootAtOrigin) {
@@ -92,8 +93,12 @@ impl DelayLine {
                 _ => f64::NAN,
             };
         }
-        if self.at_zero_delay > 0 || self.marginal_at_zero || self.always_marginal {
+        if self.at_zero_delay > 0 || self.marginal_at_zero {
             return 0.0;
+        }
+        if self.always_marginal {
+            let open = self.open_from == 0.0;
+            return if open { f64::NAN } else { 0.0 };
         }
         let first = self.changes().next().map_or(f64::INFINITY, |c| c.tau);
         if first > self.open_from {
