@@ -192,27 +192,12 @@ fn number(value: &Value) -> f64 {
 #[test]
 fn the_program_searches_systems() {
     let folder = Folder::new();
-    let args = [
-        "best",
-        "--system",
-        "pd",
-        "--set",
-        "stiffness=-1",
-        "--set",
-        "k_d=1.5",
-        "--search",
-        "k_p",
-        "--search-from",
-        "0.5",
-        "--search-to",
-        "4",
-        "--tau-from",
-        "0.05",
-        "--tau-to",
-        "1",
-        "--json",
-    ];
-    let found = json(&folder, &args);
+    // Every call is about the pendulum.
+    let of = |args: &str| {
+        let args = format!("{args} --json --system pd --set stiffness=-1 --set k_d=1.5");
+        json(&folder, &args.split(' ').collect::<Vec<_>>())
+    };
+    let found = of("best --search k_p --search-from 0.5 --search-to 4 --tau-from 0.05 --tau-to 1");
     let best = &found["best"];
     let (value, tau) = (number(&best["value"]), number(&best["tau"]));
     assert!(
@@ -220,22 +205,8 @@ fn the_program_searches_systems() {
         "{best}"
     );
     let abscissa = |value: f64, tau: f64| {
-        let (value, tau) = (format!("k_p={value:?}"), format!("{tau:?}"));
-        let args = [
-            "point",
-            "--system",
-            "pd",
-            "--set",
-            "stiffness=-1",
-            "--set",
-            "k_d=1.5",
-            "--set",
-            &value,
-            "--tau",
-            &tau,
-            "--json",
-        ];
-        number(&json(&folder, &args)["abscissa"])
+        let point = of(&format!("point --set k_p={value:?} --tau {tau:?}"));
+        number(&point["abscissa"])
     };
     let here = abscissa(value, tau);
     let margin = number(&best["margin"]);

@@ -423,3 +423,18 @@ fn long_latencies() {
         }
     }
 }
+
+/// With a delay of 10⁵ there are more frequencies than are listed: the margin is open, not 0.
+#[test]
+fn a_search_that_is_given_up_tells_no_margin() {
+    // (b, a_n) = (0.1, 0.1) with the memory 0.3, stable without latency.
+    let polynomial = |c: &[f64]| Polynomial::new(c).unwrap();
+    let (open, gain) = (polynomial(&[1.0, 0.1, 1.0]), polynomial(&[0.1]));
+    let system = System::feedback(open, gain, 0.3, 0.0);
+    let here = DelayLine::of(&system).count(1e5, MarginalTolerance::default());
+    assert!(here.stable());
+    let margin = |tau: f64| system.latency_margin(tau).expect("feedback");
+    assert!(margin(1e5).is_nan());
+    // By |A e^(−iωδ) − R B| = |B − A e^(−iωδ)| somewhere, which a long delay turns to any phase.
+    assert!((margin(3e4) - 3.373).abs() < 1e-3, "{}", margin(3e4));
+}

@@ -1,9 +1,13 @@
 //! Margins of settings against brute force: exact counts along every direction and in whole boxes,
 //! and turns of D along the imaginary axis where the feedback comes late.
 
+#[path = "common/congruence.rs"]
+mod congruence;
+
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
+use congruence::Chance;
 use num_complex::Complex64;
 use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::characteristic::characteristic;
@@ -11,21 +15,6 @@ use slipmap::linear::margins::{self, Limits, Margins, Radius, Setting, SlidingLa
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
-
-/// Numbers by chance from a seed: a linear congruence is enough here.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        let (a, c) = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
-        self.0 = self.0.wrapping_mul(a).wrapping_add(c);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.next()
-    }
-}
 
 /// By the exact count, or by the certificate where a decay rate is required.
 fn stable(Setting { groups, tau, decay }: Setting) -> bool {

@@ -1,29 +1,18 @@
 //! Margins with memory, latency and lags: against the letter's own where there is none of them,
 //! against exact counts along every direction and in whole boxes, and against scans of the loop.
 
+#[path = "common/congruence.rs"]
+mod congruence;
+
 use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
+use congruence::Chance;
 use num_complex::Complex64;
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, System};
 use slipmap::linear::margins::{self, Beyond, Case, Margins, Radius, Setting, SlidingLaw};
 use slipmap::model::{Control, FrictionLaw, Groups, Oscillator};
-
-/// Numbers by chance from a seed: a linear congruence is enough here.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        let (a, c) = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
-        self.0 = self.0.wrapping_mul(a).wrapping_add(c);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.next()
-    }
-}
 
 const NOTHING: Beyond = Beyond {
     memory: 0.0,

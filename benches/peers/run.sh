@@ -8,19 +8,10 @@
 # Times are those of the clock for slipmap, whose runs are short, and of the processor for the others, which is never more.
 set -euo pipefail
 
-rounds=${1:-5}
-[[ $rounds =~ ^[1-9][0-9]*$ ]] || {
-    echo "usage: $0 [ROUNDS] [FOLDER]; ROUNDS is a number from 1 on" >&2
-    exit 2
-}
-if [ -n "${2:-}" ]; then
-    mkdir -p "$2"
-    work=$(cd "$2" && pwd)
-else
-    work=$(mktemp -d)
-    trap 'rm -rf "$work"' EXIT
-fi
 peers=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=benches/peers/folder.sh
+. "$peers/folder.sh"
+started 5 "$@"
 # shellcheck source=scripts/setup.sh
 . "$peers/../../scripts/setup.sh"
 cd "$SLIPMAP_ROOT"
@@ -29,12 +20,7 @@ export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 say "setting up in $work"
 mkdir -p "$work/reference"
 script=$peers/jitcdde_smooth.py
-if [ ! -x "$work/venv/bin/python" ]; then
-    "${PYTHON:-python3}" -m venv "$work/venv"
-fi
-# What the script's header asks for.
-sed -n 's/^#   "\(.*\)",$/\1/p' "$script" >"$work/requirements.txt"
-"$work/venv/bin/pip" install --quiet --disable-pip-version-check -r "$work/requirements.txt"
+python_of "$script"
 CARGO_TARGET_DIR=$work/target cargo build --quiet --release --locked --manifest-path "$peers/Cargo.toml"
 
 # The executable itself: cargo may have to wait for other builds.

@@ -193,32 +193,39 @@ impl Args {
 
 /// The ranges that the flags give, over those searched by default.
 fn ranges(args: &Args, default: &Ranges) -> Result<Ranges, Failure> {
-    let gain = args.control().parameter();
+    let check = |parameter: Parameter| {
+        move |flag: &str, value: f64| {
+            let checked = parameter.check(value);
+            checked.map_or_else(|e| Err(Failure::out_of_range(flag, &e)), |_| Ok(()))
+        }
+    };
     Ok(Ranges {
         gain: range(
-            gain,
             [
                 ("--alpha-from", args.alpha_from),
                 ("--alpha-to", args.alpha_to),
             ],
             default.gain,
+            check(args.control().parameter()),
         )?,
         tau: range(
-            Parameter::Tau,
             [("--tau-from", args.tau_from), ("--tau-to", args.tau_to)],
             default.tau,
+            check(Parameter::Tau),
         )?,
     })
 }
 
-fn range(
-    parameter: Parameter,
+/// The range that two flags give, with the ends of `default` where they give none. `check` refuses
+/// the value of a flag.
+pub(super) fn range(
     [(from_flag, from), (to_flag, to)]: [(&str, Option<f64>); 2],
     default: (f64, f64),
+    check: impl Fn(&str, f64) -> Result<(), Failure>,
 ) -> Result<(f64, f64), Failure> {
     for (flag, value) in [(from_flag, from), (to_flag, to)] {
-        if let Some(Err(error)) = value.map(|value| parameter.check(value)) {
-            return Err(Failure::out_of_range(flag, &error));
+        if let Some(value) = value {
+            check(flag, value)?;
         }
     }
     let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));

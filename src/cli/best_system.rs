@@ -6,7 +6,6 @@ use serde::Serialize;
 use slipmap::explore::stability::Wanted;
 use slipmap::explore::system_point::SystemPoint;
 use slipmap::linear::best::{Best, Optimum, Region};
-use slipmap::report::numbers::rounded;
 use slipmap::sweep::Parameter;
 use slipmap::sweep::cells::best::Ranges;
 use slipmap::sweep::cells::best_of_system::{
@@ -16,8 +15,9 @@ use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::system::{Evaluation, SystemModel};
 use utoipa::ToSchema;
 
-use super::best::Args;
+use super::best::{Args, range};
 use super::best_answer::OptimumNumbers;
+use super::best_text::{print_regions, short};
 use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, Inputs};
@@ -190,16 +190,18 @@ impl Args {
         searched: Searched,
         default: &Ranges,
     ) -> Result<Ranges, Failure> {
-        let other = |parameter: Parameter| {
-            move |value: f64| {
-                let checked = parameter.check(value);
-                checked.map_err(|error| error.to_string())
-            }
+        let of = |parameter: Parameter, value: f64| {
+            let checked = parameter.check(value);
+            checked.map_err(|error| error.to_string())
+        };
+        let told = |flag: &str, checked: Result<f64, String>| match checked {
+            Ok(_) => Ok(()),
+            Err(why) => Err(Failure::bad_input(format!("{flag}: {why}"))),
         };
         let check = |value: f64| match searched {
             Searched::Own(index) => model.parameters[index].check(value),
-            Searched::Memory => other(Parameter::Memory)(value),
-            Searched::Latency => other(Parameter::Latency)(value),
+            Searched::Memory => of(Parameter::Memory, value),
+            Searched::Latency => of(Parameter::Latency, value),
         };
         Ok(Ranges {
             gain: range(
@@ -208,42 +210,15 @@ impl Args {
                     ("--search-to", self.alpha_to),
                 ],
                 default.gain,
-                check,
+                |flag, value| told(flag, check(value)),
             )?,
             tau: range(
                 [("--tau-from", self.tau_from), ("--tau-to", self.tau_to)],
                 default.tau,
-                other(Parameter::Tau),
+                |flag, value| told(flag, of(Parameter::Tau, value)),
             )?,
         })
     }
-}
-
-/// A range of two flags over its default. Where one end alone is given and the other's default is
-/// on its wrong side, the other end is the given one as well.
-fn range(
-    [(from_flag, from), (to_flag, to)]: [(&str, Option<f64>); 2],
-    default: (f64, f64),
-    check: impl Fn(f64) -> Result<f64, String>,
-) -> Result<(f64, f64), Failure> {
-    for (flag, value) in [(from_flag, from), (to_flag, to)] {
-        if let Some(Err(why)) = value.map(&check) {
-            return Err(Failure::bad_input(format!("{flag}: {why}")));
-        }
-    }
-    let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));
-    if low <= high {
-        return Ok((low, high));
-    }
-    let origin = |given: Option<f64>| given.map_or(", its default", |_| "");
-    Err(Failure::bad_input_with_help(
-        format!(
-            "{from_flag} {low}{} is above {to_flag} {high}{}",
-            origin(from),
-            origin(to)
-        ),
-        format!("{from_flag} must be at most {to_flag}"),
-    ))
 }
 
 impl Asked {
@@ -291,7 +266,6 @@ impl Asked {
         found: &Best,
         point: &SystemPoint,
     ) -> std::io::Result<()> {
-        let short = |value: f64| rounded(value, 8);
         let best = &found.overall;
         let title = match &*self.model.title {
             "" => "the system",
@@ -338,48 +312,7 @@ impl Asked {
         let searched = [(&*self.name, gain), ("tau", tau)]
             .map(|(name, (from, to))| format!("{name} {} to {}", short(from), short(to)));
         row("searched", searched.join(", "))?;
-        self.print_regions(out, found)
-    }
-
-    /// One line for each stable region.
-    fn print_regions(&self, out: &mut impl Write, found: &Best) -> std::io::Result<()> {
-        if found.regions.is_empty() {
-            return Ok(());
-        }
-        writeln!(out, "the best setting of every stable region, by delay")?;
-        let mut line = |cells: [&str; 6]| {
-            let [value, tau, time, frequency, certified, kind] = cells;
-            writeln!(
-                out,
-                "  {value:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}"
-            )
-        };
-        line([
-            &self.name,
-            "tau",
-            "relaxation_time",
-            "frequency",
-            "certified",
-            "kind",
-        ])?;
-        for Region { best, .. } in &found.regions {
-            let short = |value: f64| rounded(value, 8);
-            let time = best.relaxation_time().map_or("none".into(), short);
-            line([
-                &short(best.gain),
-                &short(best.tau),
-                &time,
-                &short(best.frequency()),
-                if best.certified { "yes" } else { "no" },
-                best.kind.name(),
-            ])?;
-        }
-        match found.regions_left_out {
-            0 => Ok(()),
-            more => writeln!(
-                out,
-                "  and {more} regions at longer delays, which were not searched"
-            ),
-        }
+        let optima = found.regions.iter().map(|region| &region.best);
+        print_regions(out, (&self.name, None), optima, found.regions_left_out)
     }
 }

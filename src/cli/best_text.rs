@@ -2,8 +2,9 @@
 
 use std::io::Write;
 
+use slipmap::linear::best::Optimum;
 use slipmap::report::numbers::{rounded, unit_behind};
-use slipmap::sweep::cells::best::{BestRegion, BestSettings};
+use slipmap::sweep::cells::best::BestSettings;
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter};
 
@@ -13,7 +14,7 @@ use super::recommended::{Control, Recommended};
 use super::{margins, vc};
 
 /// A number with as many digits as a person can use.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     rounded(value, 8)
 }
 
@@ -77,7 +78,7 @@ pub(super) fn print(
         ),
     )?;
     tell_dimensionless(out, units)?;
-    print_regions(out, searched, found, units)?;
+    print_regions_of(out, searched, found, units)?;
     print_recommended(out, told, units)
 }
 
@@ -155,37 +156,54 @@ fn print_recommended(
     }
 }
 
-/// One line for each stable region.
-fn print_regions(
+/// One line for each stable region of the block on its spring, with units where there are any.
+fn print_regions_of(
     out: &mut impl Write,
     searched: Parameter,
     found: &BestSettings,
     units: &Units,
-) -> Result<(), Failure> {
-    if found.regions.is_empty() {
+) -> std::io::Result<()> {
+    let optima = found.regions.iter().map(|region| &region.best);
+    let (gain, tau) = (units.of_parameter(searched), units.time());
+    let columns = [&*gain, &*tau, &*tau, &*units.angular_frequency(), "", ""];
+    let columns = (!units.dimensionless()).then_some(columns);
+    print_regions(
+        out,
+        (searched.name(), columns),
+        optima,
+        found.regions_left_out,
+    )
+}
+
+/// One line for each stable region, with its best setting; nothing without regions. What is
+/// searched beside the delay has a name, and the columns have units where there are any.
+pub(super) fn print_regions<'o>(
+    out: &mut impl Write,
+    (name, units): (&str, Option<[&str; 6]>),
+    optima: impl Iterator<Item = &'o Optimum>,
+    left_out: usize,
+) -> std::io::Result<()> {
+    let mut optima = optima.peekable();
+    if optima.peek().is_none() {
         return Ok(());
     }
     writeln!(out, "the best setting of every stable region, by delay")?;
     let mut line = |cells: [&str; 6]| {
-        let [gain, tau, time, frequency, certified, kind] = cells;
+        let [value, tau, time, frequency, certified, kind] = cells;
         let text =
-            format!("  {gain:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}");
+            format!("  {value:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}");
         writeln!(out, "{}", text.trim_end())
     };
     line([
-        searched.name(),
+        name,
         "tau",
         "relaxation_time",
         "frequency",
         "certified",
         "kind",
     ])?;
-    if !units.dimensionless() {
-        let gain = units.of_parameter(searched);
-        let (time, frequency) = (units.time(), units.angular_frequency());
-        line([&gain, &time, &time, &frequency, "", ""])?;
-    }
-    for BestRegion { best, .. } in &found.regions {
+    units.map_or(Ok(()), &mut line)?;
+    for best in optima {
         let time = best.relaxation_time().map_or("none".into(), short);
         line([
             &short(best.gain),
@@ -196,12 +214,11 @@ fn print_regions(
             best.kind.name(),
         ])?;
     }
-    if found.regions_left_out > 0 {
-        let more = found.regions_left_out;
-        writeln!(
+    match left_out {
+        0 => Ok(()),
+        more => writeln!(
             out,
             "  and {more} regions at longer delays, which were not searched"
-        )?;
+        ),
     }
-    Ok(())
 }

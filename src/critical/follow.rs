@@ -283,7 +283,7 @@ impl<'p> Kinds<'p> {
         }
     }
 
-    /// The same while v0 glides to near the end that was `found`.
+    /// How stick-slip ends while v0 glides to near the end that was `found`.
     fn glide(&mut self, mut entry: Motion, found: &CriticalVelocity) -> CriticalVelocity {
         let usual = &self.problem.options.ramp;
         let options = gliding(found, usual);

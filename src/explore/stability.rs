@@ -217,15 +217,16 @@ impl Latencies {
         let Some(line) = DelayLine::of_latencies(system, tau) else {
             return Self::default();
         };
+        let margin = line.latency_margin();
         let line = line.in_physical_time(time_unit);
         let mut intervals = line.stable_intervals();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        let margin = system.latency_margin(tau);
-        let open = margin.is_some_and(f64::is_nan);
         Self {
             stable_latencies: Some(ends(&stable)),
-            stable_latencies_truncated: open || intervals.next().is_some() || intervals.gave_up(),
-            margin: margin.map(|margin| margin * time_unit),
+            stable_latencies_truncated: margin.is_nan()
+                || intervals.next().is_some()
+                || intervals.gave_up(),
+            margin: Some(margin * time_unit),
         }
     }
 }

@@ -81,7 +81,7 @@ pub struct Motion {
     pub a: f64,
     /// Order of the lowest derivative that jumps now: of a or, with memory, of W.
     kink: u32,
-    /// The same for V, where the feedback has a latency.
+    /// Order of the lowest derivative of V that jumps now, where the feedback has a latency.
     signal_kink: u32,
     /// Since when the block has stuck while its elongation has grown evenly, at the rate of
     /// [`Motion::even_rate`]; +∞ while it does not.

@@ -6,7 +6,7 @@ options! {
     AlongDelayOptions {
         /// Cells from one that is searched from scratch to the next.
         segment: usize = 64, in 2..=128;
-        /// The same where one kind of stick-slip followed another on the way: it may end earlier.
+        /// Cells in a segment where one kind of stick-slip followed another: it may end earlier.
         /// Where the kinds at the other end differ, a segment is halved whatever its length.
         short_segment: usize = 16, in 2..=128;
         /// A surprising end is searched from scratch, unless one of this many cells before it was.

@@ -39,7 +39,7 @@ options! {
         back_at_last: f64 = 0.5, in 1e-6..=0.99;
         /// Distances of sticks below this are rounding.
         stick_noise: f64 = 1e-7, in 1e-15..=1e-2;
-        /// The same as a share of the last stick, if that is smaller.
+        /// Distances of sticks below this share of the last stick are rounding, if it is smaller.
         stick_left: f64 = 0.3, in 1e-3..=0.9;
 
         /// The block is released this far past a graze if it still stops at [`Self::precision`].

@@ -6,7 +6,7 @@ use super::regions::{Bound, MOST_STRETCHES, Stretch};
 use super::search::{ByParameters, Family, Place, rightmost_abscissa};
 use crate::linear::crossing::Direction;
 use crate::linear::equation::{Equation, Pair};
-use crate::linear::general::rightmost::beside_accumulation;
+use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
 use crate::linear::general::{Class, DelayLine, RightOf, RootCounter, System};
 use crate::linear::spectrum::RootFinder;
 use crate::model::elementary::norm;
@@ -47,12 +47,8 @@ impl General<'_> {
         Some(crossings(&line).count())
     }
 
-    /// Between two gains with different numbers of crossings: where the number changes.
-    fn breakpoint(&self, (mut from, mut to): (f64, f64)) -> Option<f64> {
-        let (before, after) = (self.crossings(from), self.crossings(to));
-        if before == after {
-            return None;
-        }
+    /// Where the number of crossings changes between two gains; at the first one it is `before`.
+    fn breakpoint(&self, (mut from, mut to): (f64, f64), before: Option<usize>) -> f64 {
         for _ in 0..MOST_HALVINGS {
             let middle = 0.5 * (from + to);
             if self.crossings(middle) == before {
@@ -61,7 +57,7 @@ impl General<'_> {
                 to = middle;
             }
         }
-        Some(0.5 * (from + to))
+        0.5 * (from + to)
     }
 
     /// Whether no root is right of the axis.
@@ -221,11 +217,12 @@ impl Family for General<'_> {
         // It may be that no root lies right of where they accumulate. This is asked last: so near
         // to that line a count takes long.
         let essential = system.essential_abscissa(tau);
-        let close = |line: &f64| line - essential <= CLOSE * essential.abs();
-        let none = |line: &f64| counter.right_of(tau, *line) == RightOf::Roots(0);
-        match beside_accumulation(system, tau).filter(|line| close(line) && none(line)) {
-            Some(_) => essential,
-            None => f64::INFINITY,
+        let close = |line: f64| line - essential <= CLOSE * essential.abs();
+        let close = beside_accumulation(system, tau).is_some_and(close);
+        if close && nothing_beyond_accumulation(&counter, tau).is_some() {
+            essential
+        } else {
+            f64::INFINITY
         }
     }
 
@@ -234,8 +231,16 @@ impl Family for General<'_> {
     fn breakpoints(&self, gains: &[f64]) -> Vec<f64> {
         let mut points = vec![0.0];
         if self.lines {
-            let pairs = gains.windows(2);
-            points.extend(pairs.filter_map(|pair| self.breakpoint((pair[0], pair[1]))));
+            let counted: Vec<_> = gains
+                .iter()
+                .map(|&gain| (gain, self.crossings(gain)))
+                .collect();
+            for pair in counted.windows(2) {
+                let [(from, before), (to, after)] = [pair[0], pair[1]];
+                if before != after {
+                    points.push(self.breakpoint((from, to), before));
+                }
+            }
         }
         points
     }

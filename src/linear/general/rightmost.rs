@@ -44,6 +44,13 @@ pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
     beside.is_finite().then_some(beside)
 }
 
+/// That line, where no root lies right of it; none where one does, or where that is not known.
+#[must_use]
+pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f64> {
+    let beside = beside_accumulation(counter.system(), tau);
+    beside.filter(|&line| counter.right_of(tau, line) == RightOf::Roots(0))
+}
+
 impl Spectrum {
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0 of the line `line` of the
     /// system of `counter`.
@@ -65,9 +72,7 @@ impl Spectrum {
         }
         let count = line.count(tau, MarginalTolerance::default());
         spectrum.count = Some(count);
-        if let Some(beside) = beside_accumulation(counter.system(), tau)
-            && counter.right_of(tau, beside) == RightOf::Roots(0)
-        {
+        if let Some(beside) = nothing_beyond_accumulation(counter, tau) {
             spectrum.abscissa = essential_abscissa;
             spectrum.margin = beside - essential_abscissa;
             spectrum.certified = count.n_unstable == 0 && !count.marginal;

@@ -172,6 +172,13 @@ impl DelayLine {
         }
     }
 
+    /// The interval of delays around `tau` in which no root is unstable; none where one is.
+    #[must_use]
+    pub fn stable_interval_at(&self, tau: f64) -> Option<StableInterval> {
+        let around = self.stable_intervals().find(|i| tau < i.to);
+        around.filter(|i| i.from <= tau)
+    }
+
     /// Distances to the nearest change of stability along the line.
     #[must_use]
     pub fn margins(&self) -> MarginWalk<'_> {

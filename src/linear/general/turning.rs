@@ -98,7 +98,7 @@ impl WholeTurns {
         u64::try_from(without_turns + 2 * self.sum as i64).ok()
     }
 
-    /// As what is told of a line.
+    /// The number of roots right of a line, or why there is none.
     #[inline]
     pub(super) fn right_of(self, without_turns: Result<i64, NoNumber>) -> RightOf {
         match without_turns {

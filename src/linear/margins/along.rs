@@ -104,7 +104,7 @@ pub(super) fn longest_delay(case: &Case) -> f64 {
     }
 }
 
-/// The same wherever roots accumulate.
+/// The longest delay that is searched, whether roots accumulate before it or not.
 fn longest_searched(setting: &Setting) -> f64 {
     longest_latency(setting.decay).max(2.0 * setting.tau)
 }

@@ -14,12 +14,12 @@ const MOST_STEPS: u32 = 48;
 const MOST_ASTRAY: u32 = 3;
 /// Steps along a direction when settings that are not stable are looked for.
 const STEPS: u32 = 48;
-/// The same beyond the letter, where the count takes ten times as long.
+/// Steps along a direction beyond the letter, where the count takes ten times as long.
 const STEPS_BEYOND: u32 = 12;
 
 /// Finding the crossings of a setting takes as long as enclosing D so many times.
 const WORK_OF_CROSSINGS: u32 = 4;
-/// The same beyond the letter.
+/// Beyond the letter it takes as long as enclosing D this many times.
 const WORK_OF_CROSSINGS_BEYOND: u32 = 16;
 
 impl Surroundings<'_> {

@@ -25,7 +25,7 @@ pub struct Case {
 
 /// What margins can be asked of.
 pub trait AsCase {
-    /// As a setting that may have something beyond the letter's own.
+    /// The setting, with what its feedback has beyond the letter's own.
     fn case(&self) -> Case;
 }
 
@@ -94,14 +94,16 @@ impl Case {
         }
     }
 
-    /// The same with both gains `factor` times as large.
+    /// Whether all roots are left of the line with both gains `factor` times as large; none where
+    /// one is on it within rounding.
     pub(super) fn stability_with_gains(&self, factor: f64) -> Option<bool> {
         let Groups { b, a_v, a_n } = self.setting.groups;
         let groups = Groups::new(b, factor * a_v, factor * a_n);
         self.stability_at(groups, self.setting.tau)
     }
 
-    /// The same at another slope.
+    /// Whether all roots are left of the line at the slope `b`; none where one is on it within
+    /// rounding.
     pub(super) fn stability_with_slope(&self, b: f64) -> Option<bool> {
         let Setting { groups, tau, .. } = self.setting;
         self.stability_at(Groups { b, ..groups }, tau)

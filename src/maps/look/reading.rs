@@ -18,7 +18,7 @@ use crate::sweep::plan::tile::{memory_strides, place_of};
 
 /// A whole chunk is kept as runs if these take at most one such share of its bytes.
 const SHARE_OF_CHUNK: usize = 16;
-/// The same for the part of a chunk in a plane.
+/// The part of a chunk in a plane is kept as runs if these take at most one such share of it.
 const SHARE_OF_SLAB: usize = 4;
 
 /// Reads the chunks of a map.

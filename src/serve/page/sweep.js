@@ -8,7 +8,7 @@ export const MODEL = ["mass", "stiffness", "normal_load"];
 /** Parameters of the feedback beyond the letter's. */
 export const FEEDBACK = ["memory", "latency", "load_lag", "velocity_lag", "sensor_lag"];
 
-/** Parameters that are most often as if not given: they stand behind folds, and are left out then. */
+/** Parameters that are most often at their defaults: they are folded away, and then left out. */
 export const FOLDED = [...FEEDBACK, ...MODEL, "mu_k"];
 
 /** The parameters on which what is shown depends, in the order in which they are set. */

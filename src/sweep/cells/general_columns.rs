@@ -7,8 +7,8 @@ use super::buffers::TileBuffers;
 use super::line::Places;
 use super::root_columns::{Line, RootColumns};
 use crate::linear::MarginalTolerance;
-use crate::linear::general::rightmost::beside_accumulation;
-use crate::linear::general::{Class, DelayLine, Reason, RightOf, RootCounter, System};
+use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
+use crate::linear::general::{Class, DelayLine, Reason, RootCounter, System};
 use crate::linear::row::Delays;
 use crate::linear::status::{CERTIFIED, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
@@ -188,10 +188,7 @@ impl GeneralColumns {
             .iter()
             .zip(&mut self.no_rightmost)
         {
-            let tau = tau / line.time_unit;
-            let beside = beside_accumulation(line.system, tau);
-            *no_rightmost =
-                beside.is_some_and(|beside| counter.right_of(tau, beside) == RightOf::Roots(0));
+            *no_rightmost = nothing_beyond_accumulation(counter, tau / line.time_unit).is_some();
         }
     }
 

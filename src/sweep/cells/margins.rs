@@ -103,14 +103,12 @@ impl Around {
         let Some((system, tau)) = &self.line else {
             return scaled(margins::delay(&self.of), unit);
         };
-        // As all that is told of the delays of a system.
         let line = DelayLine::of(system).in_physical_time(unit);
-        let mut intervals = line.stable_intervals();
-        let around = intervals.find(|i| *tau < i.to).filter(|i| i.from <= *tau);
-        around.map_or(Limits::UNDECIDED, |found| Limits {
-            lower: found.from,
-            upper: found.to,
-        })
+        line.stable_interval_at(*tau)
+            .map_or(Limits::UNDECIDED, |found| Limits {
+                lower: found.from,
+                upper: found.to,
+            })
     }
 
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.

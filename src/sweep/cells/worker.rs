@@ -414,7 +414,7 @@ impl<'p> Worker<'p> {
         self.refuse(at, self.delays.values().len());
     }
 
-    /// The same for the first `len` cells from `at` on.
+    /// The first `len` cells of a line, from `at` on, keep fill values and are flagged.
     fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {

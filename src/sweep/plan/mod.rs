@@ -39,7 +39,7 @@ pub const MOST_TILES: usize = 1 << 21;
 const MOST_PLANES: u64 = 1_000_000;
 /// The most planes whose crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
-/// The same where every curve is followed step by step.
+/// The most planes traced without being asked for where every curve is followed step by step.
 const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.

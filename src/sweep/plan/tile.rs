@@ -100,7 +100,7 @@ pub(crate) fn strides_of(shape: &[usize]) -> Vec<u64> {
     strides
 }
 
-/// The same for a box in memory.
+/// Distance between neighbouring cells along each axis of a box in memory, last axis fastest.
 pub(crate) fn memory_strides(shape: &[usize]) -> Vec<usize> {
     let strides = strides_of(shape).into_iter();
     strides.map(|stride| stride as usize).collect()

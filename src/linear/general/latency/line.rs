@@ -84,9 +84,10 @@ impl DelayLine {
         }
     }
 
-    /// The first change of the number of unstable roots along the line, if the line begins stable;
-    /// 0 where it does not, ∞ where nothing changes, NaN where that is open.
-    fn margin(&self) -> f64 {
+    /// Of a line of latencies: the first change of the number of unstable roots along it, if it
+    /// begins stable; 0 where it does not, ∞ where nothing changes, NaN where that is open.
+    #[must_use]
+    pub fn latency_margin(&self) -> f64 {
         if self.uncounted {
             return match self.reason {
                 Some(Reason::Infinite) => 0.0,
@@ -115,6 +116,6 @@ impl System {
     /// in feedback form.
     #[must_use]
     pub fn latency_margin(&self, tau: f64) -> Option<f64> {
-        DelayLine::of_latencies(self, tau).map(|line| line.margin())
+        DelayLine::of_latencies(self, tau).map(|line| line.latency_margin())
     }
 }

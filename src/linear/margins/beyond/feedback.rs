@@ -77,8 +77,7 @@ impl Beyond {
     }
 
     /// Whether all roots are left of Re λ = −`decay` at the delay `tau`; none where one is on that
-    /// line within rounding. On the imaginary axis by the crossings, as maps have it: without
-    /// damping P has zeros there, of which the count along a line says less.
+    /// line within rounding. On the imaginary axis it comes from the crossings, as in maps.
     pub(in super::super) fn stability(&self, groups: Groups, tau: f64, decay: f64) -> Option<bool> {
         let system = self.system(groups);
         if decay == 0.0 {
@@ -100,9 +99,7 @@ impl Beyond {
         groups: Groups,
         tau: f64,
     ) -> Option<StableInterval> {
-        let line = DelayLine::of(&self.system(groups));
-        let mut intervals = line.stable_intervals();
-        intervals.find(|i| tau < i.to).filter(|i| i.from <= tau)
+        DelayLine::of(&self.system(groups)).stable_interval_at(tau)
     }
 
     /// The delay at which infinitely many roots come to the line Re λ = −`decay`: ln(1/|R|)/σ.

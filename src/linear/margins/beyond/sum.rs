@@ -81,7 +81,7 @@ impl Terms {
         super::feedback::polynomial(&sizes[..=degree])
     }
 
-    /// As what is searched for zeros.
+    /// The function of ω whose zeros are searched for.
     pub(super) fn sum(&self) -> Sum {
         let mut sum = Sum {
             part: self.part,
