@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All benches in one go, and a table of the ratios that they print, with machine and date, as the guide shows it:
+# All benches in one go, and the tables of doc/guide/figures.md, with machine and date:
 #
 #   scripts/figures_of_merit.sh [--peers] [--browser] [--short]
 #
@@ -8,7 +8,8 @@
 #   --browser   also the page in a headless browser beside plotly.js and h5web (scripts/browser.sh bench --peers)
 #   --short     as little of each as shows that it works: its figures mean nothing
 #
-# What each bench prints is kept in target/figures-of-merit. On a machine with other work ratios mean more than times.
+# What each bench prints is kept in target/figures-of-merit, and scripts/figures_table.py makes the tables of it. On a machine with
+# other work ratios mean more than times. Takes 15 minutes on two idle cores with peers and browser, 6 without.
 set -euo pipefail
 
 # shellcheck source=scripts/setup.sh
@@ -28,6 +29,7 @@ done
 
 folder=target/figures-of-merit
 mkdir -p "$folder"
+rm -f "$folder"/*.txt
 
 # kept NAME COMMAND…: runs it, shows what it prints and keeps that.
 kept() {
@@ -55,12 +57,5 @@ revision=$(git describe --always --dirty 2>/dev/null || echo unknown)
 {
     printf '%s, %s threads, load %s, %s, revision %s%s\n\n' "$processor" "$threads" "$load" "$(date +%F)" "$revision" \
         "${short:+, SHORT RUN: figures mean nothing}"
-    printf '| bench | what it printed |\n| --- | --- |\n'
-    for file in "$folder"/*.txt; do
-        name=$(basename "$file" .txt)
-        # Lines that compare: they have a ratio, a share or a time.
-        grep -E '( = |times|differs|agree|mean|µs|[0-9] us |ratio|cell by cell|tracked)' "$file" |
-            grep -vE '^(warning|error| *Compiling| *Finished| *Running|==)' | sed 's/|/\\|/g' |
-            while IFS= read -r line; do printf '| %s | %s |\n' "$name" "$line"; done
-    done
+    python3 scripts/figures_table.py "$folder"
 } | tee "$folder/table.md"
