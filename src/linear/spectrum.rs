@@ -28,12 +28,18 @@ const BESIDE_ESSENTIAL: f64 = 1e-6;
 const CLOSE: f64 = 16.0;
 /// How far from a cluster of nearly equal roots its number may be counted.
 const FARTHEST_COUNT: f64 = 0.03;
+/// Roots that are followed from one point to the next.
+const FOLLOWED: usize = 4;
+/// How far left of the rightmost one they are counted, relative.
+const LEFT_OF_FOLLOWED: f64 = 1e-6;
 
 /// Finds roots, keeping its memory from one point to the next.
 #[derive(Debug, Clone, Default)]
 pub struct RootFinder {
     starts: Vec<Complex64>,
     roots: Vec<Root>,
+    /// Roots near which those of the next point are looked for.
+    followed: Vec<Complex64>,
     /// How often the branches of the logarithm were not enough.
     pub collocations: u64,
 }
@@ -112,6 +118,46 @@ impl RootFinder {
     ) -> Result<&[Root], Incomplete> {
         let line = line_left_of(equation, tau, wanted, leftmost);
         self.right_of(equation, tau, line)
+    }
+
+    /// The real part of the rightmost root. Where the equation has changed little since the last
+    /// call, the roots found then lead to it. A count proves that none lies farther right.
+    ///
+    /// # Errors
+    /// When roots are missing.
+    pub fn abscissa(&mut self, equation: impl Equation, tau: f64) -> Result<f64, Incomplete> {
+        if let Some(found) = self.followed_abscissa(equation, tau) {
+            return Ok(found);
+        }
+        self.rightmost(equation, tau, FOLLOWED as u64, f64::NEG_INFINITY)?;
+        self.follow();
+        let first = self.roots.first().ok_or(Incomplete {
+            line: f64::NEG_INFINITY,
+        })?;
+        Ok(first.lambda.re)
+    }
+
+    /// By the roots that are followed; none where they are not the rightmost ones.
+    fn followed_abscissa(&mut self, equation: impl Equation, tau: f64) -> Option<f64> {
+        if self.followed.is_empty() || tau == 0.0 || equation.uncontrolled() {
+            return None;
+        }
+        self.starts.clone_from(&self.followed);
+        self.roots.clear();
+        self.polish_starts(equation, tau, f64::NEG_INFINITY);
+        self.follow();
+        let Root { lambda, error } = *self.roots.first()?;
+        let line = lambda.re - LEFT_OF_FOLLOWED * (1.0 + lambda.re.abs()) - 16.0 * error;
+        let count = equation.right_of(tau, line)?;
+        self.roots.retain(|root| root.lambda.re > line);
+        self.complete(equation, tau, count).then_some(lambda.re)
+    }
+
+    /// The rightmost of the roots found are followed from here on.
+    fn follow(&mut self) {
+        let rightmost = self.roots.iter().map(|root| root.lambda).take(FOLLOWED);
+        self.followed.clear();
+        self.followed.extend(rightmost);
     }
 
     /// Adds the roots to which the starting values lead, without duplicates, in order.

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::regions::{Bound, MOST_STRETCHES, Stretch};
-use super::search::{ByParameters, Family, Place, rightmost_abscissa};
+use super::search::{ByParameters, Family, Place};
 use crate::linear::crossing::Direction;
 use crate::linear::equation::{Equation, Pair};
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
@@ -210,9 +210,10 @@ impl Family for General<'_> {
         if tau > 0.0 && system.class() == Class::Infinite {
             return f64::INFINITY;
         }
-        let found = rightmost_abscissa(&counter, finder, tau);
-        if found.is_finite() || tau == 0.0 {
-            return found;
+        match finder.abscissa(&counter, tau) {
+            Ok(found) => return found,
+            Err(_) if tau == 0.0 => return f64::INFINITY,
+            Err(_) => {}
         }
         // It may be that no root lies right of where they accumulate. This is asked last: so near
         // to that line a count takes long.
@@ -254,8 +255,7 @@ impl Family for General<'_> {
         let Some(line) = self.line(gain) else {
             return Vec::new();
         };
-        line.stable_intervals()
-            .take_while(|interval| interval.from <= delays.1)
+        line.stable_intervals_until(delays.1)
             .take(MOST_STRETCHES)
             .filter(|interval| interval.to >= delays.0)
             .filter_map(|interval| {

@@ -15,6 +15,8 @@ const LINES_AT_BREAKPOINT: i32 = 72;
 const CLOSER: f64 = 0.6;
 /// The width of the narrowest stretch, relative: rounding is below it.
 const NARROWEST: f64 = 1e-12;
+/// Gains so near to one another, relative to the box, are hardly told apart.
+const BLURRED: f64 = 1e-14;
 /// Stable intervals looked at on one line.
 pub(super) const MOST_STRETCHES: usize = 1024;
 
@@ -72,9 +74,10 @@ pub(super) type Stretches = Vec<Stretch>;
 
 /// All regions of the box that a sampled gain crosses, by their shortest delay.
 pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
-    let lines: Vec<Stretches> = sampled_gains(search)
-        .into_iter()
-        .map(|gain| search.family.stretches(gain, search.delays))
+    let gains = sampled_gains(search);
+    let lines: Vec<Stretches> = gains
+        .iter()
+        .map(|&gain| search.family.stretches(gain, search.delays))
         .collect();
     let offsets: Vec<usize> = lines
         .iter()
@@ -83,11 +86,11 @@ pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
         })
         .collect();
     let mut groups = Sets::new(lines.iter().map(Vec::len).sum());
-    for (i, pair) in lines.windows(2).enumerate() {
-        for (p, here) in pair[0].iter().enumerate() {
-            for (q, there) in pair[1].iter().enumerate() {
+    for (i, j) in neighbours(&gains, search.gains.1 - search.gains.0) {
+        for (p, here) in lines[i].iter().enumerate() {
+            for (q, there) in lines[j].iter().enumerate() {
                 if here.touches(there) {
-                    groups.join(offsets[i] + p, offsets[i + 1] + q);
+                    groups.join(offsets[i] + p, offsets[j] + q);
                 }
             }
         }
@@ -105,6 +108,16 @@ pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
     let shortest = |r: &Stretches| r.iter().map(|s| s.from).fold(f64::INFINITY, f64::min);
     regions.sort_by(|p, q| shortest(p).total_cmp(&shortest(q)));
     regions
+}
+
+/// Pairs of rising `gains`, by number: each with the next one, and with all that are as near to it
+/// as rounding. Where a lobe ends in a point, one of these may show it and its neighbour not.
+fn neighbours(gains: &[f64], width: f64) -> impl Iterator<Item = (usize, usize)> {
+    let near = move |i: usize, j: usize| j == i + 1 || gains[j] - gains[i] <= BLURRED * width;
+    (0..gains.len()).flat_map(move |i| {
+        let next = (i + 1..gains.len()).take_while(move |&j| near(i, j));
+        next.map(move |j| (i, j))
+    })
 }
 
 /// The gains at which stable delays are asked for, rising.

@@ -1,5 +1,7 @@
 //! The delays at which a general system is stable: the crossings of its line, merged in order.
 
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 use std::f64::consts::{PI, TAU};
 
 use super::line::DelayLine;
@@ -19,17 +21,52 @@ pub struct Change {
 #[derive(Debug, Clone)]
 pub struct Changes<'l> {
     line: &'l DelayLine,
-    /// The branch of the next delay of each crossing.
-    branches: Vec<u64>,
+    /// The next delay of each crossing.
+    next: BinaryHeap<Reverse<Next>>,
     passed: bool,
+}
+
+/// The next delay of one of a line's crossings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Next {
+    tau: f64,
+    crossing: usize,
+    branch: u64,
+}
+
+impl Eq for Next {}
+
+impl Ord for Next {
+    /// By delay. At one delay crossings of higher frequency are first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_delay = self.tau.total_cmp(&other.tau);
+        by_delay.then(self.crossing.cmp(&other.crossing))
+    }
+}
+
+impl PartialOrd for Next {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 impl<'l> Changes<'l> {
     /// From the delay `tau` on.
     pub(super) fn from(line: &'l DelayLine, tau: f64) -> Self {
+        let crossings = line.crossings.iter().enumerate();
+        let moving = crossings.filter(|(_, c)| c.direction != Direction::Touch);
+        let next = moving.map(|(crossing, c)| {
+            let branch = c.branch_at(tau);
+            let tau = c.delay(branch);
+            Reverse(Next {
+                tau,
+                crossing,
+                branch,
+            })
+        });
         Self {
             line,
-            branches: line.crossings.iter().map(|c| c.branch_at(tau)).collect(),
+            next: next.collect(),
             passed: line.passage.is_none_or(|p| p.tau < tau),
         }
     }
@@ -39,25 +76,28 @@ impl Iterator for Changes<'_> {
     type Item = Change;
 
     fn next(&mut self) -> Option<Change> {
-        let crossings = self.line.crossings.iter().enumerate();
-        let next = crossings
-            .filter(|(_, c)| c.direction != Direction::Touch)
-            .map(|(i, c)| (c.delay(self.branches[i]), i))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let next = self.next.peek_mut();
         let passage = self.line.passage.filter(|_| !self.passed);
         match (next, passage) {
-            (next, Some(passage)) if next.is_none_or(|(tau, _)| passage.tau <= tau) => {
+            (next, Some(passage)) if next.as_ref().is_none_or(|n| passage.tau <= n.0.tau) => {
                 self.passed = true;
                 Some(Change {
                     tau: passage.tau,
                     by: passage.change,
                 })
             }
-            (Some((tau, i)), _) => {
-                self.branches[i] += 1;
+            (Some(mut next), _) => {
+                let Reverse(Next {
+                    tau,
+                    crossing,
+                    branch,
+                }) = *next;
+                let crossing = &self.line.crossings[crossing];
+                next.0.branch = branch + 1;
+                next.0.tau = crossing.delay(branch + 1);
                 Some(Change {
                     tau,
-                    by: 2 * self.line.crossings[i].direction.sign(),
+                    by: 2 * crossing.direction.sign(),
                 })
             }
             (None, _) => None,
@@ -76,7 +116,7 @@ pub struct StableIntervals<'l> {
     left: u64,
     n: i64,
     from: f64,
-    /// Beyond it nothing is stable.
+    /// From it on nothing is stable, or wanted.
     last: f64,
 }
 
@@ -162,20 +202,27 @@ impl DelayLine {
     /// There are finitely many, but near a touch more than anyone wants: take some.
     #[must_use]
     pub fn stable_intervals(&self) -> StableIntervals<'_> {
+        self.stable_intervals_until(f64::INFINITY)
+    }
+
+    /// Those of [`DelayLine::stable_intervals`] that begin at the delay `until` or below.
+    #[must_use]
+    pub fn stable_intervals_until(&self, until: f64) -> StableIntervals<'_> {
         let never = self.always_marginal || self.uncounted;
+        let last = if never { 0.0 } else { self.last_stable() };
         StableIntervals {
             changes: self.changes(),
             left: MOST_CHANGES,
             n: self.at_zero_delay as i64,
             from: 0.0,
-            last: if never { 0.0 } else { self.last_stable() },
+            last: last.min(until.next_up()),
         }
     }
 
     /// The interval of delays around `tau` in which no root is unstable; none where one is.
     #[must_use]
     pub fn stable_interval_at(&self, tau: f64) -> Option<StableInterval> {
-        let around = self.stable_intervals().find(|i| tau < i.to);
+        let around = self.stable_intervals_until(tau).find(|i| tau < i.to);
         around.filter(|i| i.from <= tau)
     }
 
