@@ -65,6 +65,42 @@ fn the_letter_by_both_ways() {
     }
 }
 
+/// A lobe that ends in a point is one region, though rounding hides it at some of the gains next to
+/// that point. At this friction each lobe used to be told twice.
+#[test]
+fn a_lobe_is_told_once() {
+    let friction = "best --friction rate-and-state --mu0 0.6 --direct-effect 0.05 \
+                    --evolution-effect 0.3 --slip-distance 0.5 --v0 1 --v-star 1 --memory 0.2";
+    let args: Vec<&str> = friction.split_whitespace().collect();
+    let told = json(&Folder::new(), &[&args[..], &["--json"]].concat());
+    let delays: Vec<f64> = told["regions"]
+        .as_array()
+        .expect("regions")
+        .iter()
+        .map(|region| number(&region["tau"]))
+        .collect();
+    assert_eq!(delays.len(), 4, "{delays:?}");
+    assert!(delays.windows(2).all(|d| d[1] - d[0] > 5.0), "{delays:?}");
+}
+
+/// With a memory of nearly 1 the best setting is one where no root lies right of the line at which
+/// they accumulate, ln R/τ.
+#[test]
+fn roots_that_accumulate_are_told() {
+    let (folder, setting) = (Folder::new(), ["best", "--mu-prime=-0.3", "--memory=0.99"]);
+    let told = &json(&folder, &[&setting[..], &["--json"]].concat())["best"];
+    assert_eq!(told["kind"], "roots accumulate");
+    assert_eq!(told["certified"], true);
+    assert!(told["frequency"].is_null());
+    let [tau, abscissa] = ["tau", "abscissa"].map(|name| number(&told[name]));
+    assert!(
+        (abscissa * tau / 0.99_f64.ln() - 1.0).abs() < 1e-3,
+        "{told}"
+    );
+    let text = out(&folder.run(&setting));
+    assert!(text.contains("  frequency        none"), "{text}");
+}
+
 /// B and A with R and δ, where one coefficient of A is a gain that is searched.
 #[derive(Debug)]
 struct Problem {

@@ -17,7 +17,7 @@ use utoipa::ToSchema;
 
 use super::best::{Args, range};
 use super::best_answer::OptimumNumbers;
-use super::best_text::{print_regions, short};
+use super::best_text::{frequency_of, print_regions, short};
 use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, Inputs};
@@ -286,7 +286,7 @@ impl Asked {
         row(&self.name, short(best.gain))?;
         row("tau", short(best.tau))?;
         row("abscissa", short(best.abscissa))?;
-        row("frequency", short(best.frequency()))?;
+        row("frequency", frequency_of(best).unwrap_or("none".into()))?;
         row("kind", best.kind.name().into())?;
         let certified = if best.certified { "yes" } else { "no" };
         row("certified", certified.into())?;

@@ -18,6 +18,12 @@ pub(super) fn short(value: f64) -> String {
     rounded(value, 8)
 }
 
+/// The lowest frequency of an optimum; none where its roots have none, because they accumulate.
+pub(super) fn frequency_of(best: &Optimum) -> Option<String> {
+    let told = !best.frequencies.is_empty();
+    told.then(|| short(best.frequency()))
+}
+
 pub(super) fn print(
     out: &mut impl Write,
     told: &Recommended,
@@ -50,13 +56,11 @@ pub(super) fn print(
     let with = |parameter: Parameter, value: f64| format!("{}{}", short(value), of(parameter));
     row(searched.name(), with(searched, best.gain))?;
     row("tau", with(Parameter::Tau, best.tau))?;
-    for (field, value) in [
-        (Field::Abscissa, best.abscissa),
-        (Field::Frequency, best.frequency()),
-    ] {
-        let unit = unit_behind(&field.unit(units));
-        row(field.name(), format!("{}{unit}", short(value)))?;
-    }
+    let unit = |field: Field| unit_behind(&field.unit(units));
+    let abscissa = format!("{}{}", short(best.abscissa), unit(Field::Abscissa));
+    row(Field::Abscissa.name(), abscissa)?;
+    let frequency = frequency_of(best).map(|f| f + &unit(Field::Frequency));
+    row(Field::Frequency.name(), frequency.unwrap_or("none".into()))?;
     row("kind", best.kind.name().into())?;
     row(
         "certified",
@@ -209,7 +213,7 @@ pub(super) fn print_regions<'o>(
             &short(best.gain),
             &short(best.tau),
             &time,
-            &short(best.frequency()),
+            &frequency_of(best).unwrap_or("none".into()),
             if best.certified { "yes" } else { "no" },
             best.kind.name(),
         ])?;

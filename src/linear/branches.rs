@@ -22,6 +22,8 @@ const STEPS: u32 = 4;
 const MOST_BRANCHES: usize = 1 << 20;
 /// Most branches followed: more roots than that right of the line are not wanted.
 const MOST_STARTS: usize = 4096;
+/// Where there are more it is worth knowing which to follow, without looking at each.
+const FEW: usize = 64;
 /// The first of them are followed in any case.
 const ALWAYS_FOLLOWED: usize = 4;
 /// Parts into which the real axis is cut to find real roots.
@@ -79,34 +81,90 @@ pub(super) fn starting_values(
     starts: &mut Vec<Complex64>,
 ) {
     starts.clear();
-    let pair = equation.pair();
     let radius = equation.root_bound(tau, line);
-    let span = equation.memory_span(tau);
-    let branches = (radius * span / PI).ceil() + 2.0;
-    let kappa = exp(-line * tau);
-    let place = |j: usize| PI * j as f64 / span;
-    // A guess: roots right of the line belong to branches where feedback is the larger term on the
-    // line.
-    let inside = |j: usize| {
-        let [p, _, q, _] = pair.at(Complex64::new(line, place(j)));
-        p.norm_sqr() <= kappa * kappa * q.norm_sqr()
+    let branches = Branches {
+        pair: equation.pair(),
+        tau,
+        span: equation.memory_span(tau),
+        line,
     };
-    let (mut before, mut here) = (true, true);
-    for j in 0..(branches as usize).min(MOST_BRANCHES) {
-        let after = j < ALWAYS_FOLLOWED || inside(j + 1);
-        if (before || here || after)
-            && let Some(start) = follow_branch(&pair, (tau, span), place(j))
-        {
-            starts.push(start);
-        }
-        if starts.len() >= MOST_STARTS {
-            break;
-        }
-        (before, here) = (here, after);
+    let number = branches.number(radius).ceil() + 2.0;
+    let number = (number as usize).min(MOST_BRANCHES);
+    let bands = (number > FEW).then(|| equation.equal_sizes(tau, line));
+    match bands.flatten() {
+        Some(ends) => branches.of_bands(number, ends, starts),
+        None => branches.one_by_one(number, starts),
     }
     // Roots stay near the zeros of P under weak feedback, near those of B at short delays.
     equation.zeros(starts);
-    real_starts(&pair, tau, line, radius, starts);
+    real_starts(&branches.pair, tau, line, radius, starts);
+}
+
+/// The branches of λτ = log(−Q/P) + 2πik, numbered by where they are followed from, half a turn of
+/// e^(−λτ) from one to the next.
+///
+/// A guess says which to follow: roots right of the line belong to branches where feedback is the
+/// larger term on the line, and to those next to them.
+struct Branches<P> {
+    pair: P,
+    tau: f64,
+    /// How far back in time the equation reaches.
+    span: f64,
+    line: f64,
+}
+
+impl<P: Pair> Branches<P> {
+    fn frequency(&self, j: usize) -> f64 {
+        PI * j as f64 / self.span
+    }
+
+    /// The number of a branch at the frequency `omega`, not rounded.
+    fn number(&self, omega: f64) -> f64 {
+        omega * self.span / PI
+    }
+
+    /// Whether feedback is the larger term on the line.
+    fn inside(&self, omega: f64) -> bool {
+        let kappa = exp(-self.line * self.tau);
+        let [p, _, q, _] = self.pair.at(Complex64::new(self.line, omega));
+        p.norm_sqr() <= kappa * kappa * q.norm_sqr()
+    }
+
+    /// Follows branch `j`; false where there are starts enough.
+    fn follow(&self, j: usize, starts: &mut Vec<Complex64>) -> bool {
+        let spans = (self.tau, self.span);
+        starts.extend(follow_branch(&self.pair, spans, self.frequency(j)));
+        starts.len() < MOST_STARTS
+    }
+
+    /// All of the first `number` that are wanted, each looked at.
+    fn one_by_one(&self, number: usize, starts: &mut Vec<Complex64>) {
+        let (mut before, mut here) = (true, true);
+        for j in 0..number {
+            let after = j < ALWAYS_FOLLOWED || self.inside(self.frequency(j + 1));
+            if (before || here || after) && !self.follow(j, starts) {
+                break;
+            }
+            (before, here) = (here, after);
+        }
+    }
+
+    /// The same where `ends`, the frequencies at which both terms are equal, are known.
+    fn of_bands(&self, number: usize, mut ends: Vec<f64>, starts: &mut Vec<Complex64>) {
+        ends.sort_by(f64::total_cmp);
+        ends.push(self.frequency(number));
+        let (mut from, mut next) = (0.0, ALWAYS_FOLLOWED);
+        let mut enough = (0..next).any(|j| !self.follow(j, starts));
+        for to in ends {
+            if self.inside(0.5 * (from + to)) {
+                let [first, last] = [from, to].map(|omega| self.number(omega) as usize);
+                let range = next.max(first.saturating_sub(1))..number.min(last + 3);
+                next = next.max(range.end);
+                enough = enough || range.into_iter().any(|j| !self.follow(j, starts));
+            }
+            from = to;
+        }
+    }
 }
 
 /// Newton's method on λτ = log(−Q/P) + 2πik from the branch that `omega` belongs to.

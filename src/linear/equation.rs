@@ -53,6 +53,12 @@ pub trait Equation: Copy {
     /// The radius within which every root with Re λ ≥ `line` lies.
     fn root_bound(self, tau: f64, line: f64) -> f64;
 
+    /// The frequencies at which |P| = |Q e^(−λτ)| on `line`, in no order; none where that takes
+    /// longer than to look for them.
+    fn equal_sizes(self, _tau: f64, _line: f64) -> Option<Vec<f64>> {
+        None
+    }
+
     /// The real part at which roots accumulate; nothing is searched left of it.
     fn essential_abscissa(self, tau: f64) -> f64;
 

@@ -91,11 +91,13 @@ pub enum Kind {
     Edge,
     /// No condition could be confirmed; the place is as good as the direct search found it.
     Descent,
+    /// No root lies right of the line at which infinitely many accumulate.
+    Accumulation,
 }
 
 impl Kind {
     /// All kinds, in the order of their numbers in maps.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::DoublePair,
         Self::TripleReal,
         Self::DoubleReal,
@@ -107,6 +109,7 @@ impl Kind {
         Self::OneRoot,
         Self::Edge,
         Self::Descent,
+        Self::Accumulation,
     ];
 
     /// In words.
@@ -124,6 +127,7 @@ impl Kind {
             Self::OneRoot => "one root",
             Self::Edge => "edge of the range",
             Self::Descent => "direct search",
+            Self::Accumulation => "roots accumulate",
         }
     }
 }
@@ -138,7 +142,7 @@ pub struct Optimum {
     /// The spectral abscissa max Re λ; negative where sliding is stable.
     pub abscissa: f64,
     /// |Im λ| of the roots that share this real part, rising; 0 for a real one. A double root
-    /// stands once.
+    /// stands once. None where roots accumulate there.
     pub frequencies: Vec<f64>,
     /// What makes it an optimum.
     pub kind: Kind,
@@ -151,7 +155,7 @@ pub struct Optimum {
 }
 
 impl Optimum {
-    /// The lowest frequency among the rightmost roots.
+    /// The lowest frequency among the rightmost roots; NaN where there is none.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.frequencies.first().copied().unwrap_or(f64::NAN)

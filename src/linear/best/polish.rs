@@ -22,6 +22,8 @@ const CANDIDATES: u64 = 12;
 /// the one before, from four times what rounding can do to the abscissa. Near a multiple root the
 /// argument principle needs a line farther away than the root is blurred.
 const DISTANCES: i32 = 9;
+/// How near, relative, to the line at which roots accumulate an abscissa is that line.
+const BESIDE_ESSENTIAL: f64 = 1e-3;
 /// What is left undecided of an abscissa that the descent alone has found.
 const DESCENT_ERROR: f64 = 1e-8;
 
@@ -42,20 +44,25 @@ pub(super) fn polished(
 }
 
 /// What the descent found, with as much certainty as that has.
-pub(super) fn unpolished(
+pub(super) fn unpolished<F: Family>(
     evaluator: &mut Evaluator,
-    search: &Search<impl Family>,
+    search: &Search<F>,
     (place, abscissa): (Place, f64),
 ) -> Optimum {
     let rightmost = evaluator.roots(search, place, 1).first();
-    let frequencies = rightmost.map(|root| vec![root.lambda.im]);
+    let frequency = rightmost.map(|root| root.lambda.im);
     let margin = decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0));
+    let accumulating = search.family.setting(place).is_some_and(|setting| {
+        let essential = F::equation(&setting).essential_abscissa(place.tau);
+        abscissa - essential <= BESIDE_ESSENTIAL * essential.abs()
+    });
     Optimum {
         gain: place.gain,
         tau: place.tau,
         abscissa,
-        frequencies: frequencies.unwrap_or_default(),
+        frequencies: frequency.into_iter().collect(),
         kind: match search.on_edge(place) {
+            (false, false) if frequency.is_none() && accumulating => Kind::Accumulation,
             (false, false) => Kind::Descent,
             _ => Kind::Edge,
         },

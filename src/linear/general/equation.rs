@@ -77,6 +77,13 @@ impl Equation for &RootCounter {
         self.system().root_bound(tau, line)
     }
 
+    fn equal_sizes(self, tau: f64, line: f64) -> Option<Vec<f64>> {
+        // With latency they are not the zeros of a polynomial.
+        let polynomial = self.system().late().is_none();
+        let frequencies = || self.frequencies(tau, line).into_iter();
+        polynomial.then(|| frequencies().map(|(omega, _)| omega).collect())
+    }
+
     fn essential_abscissa(self, tau: f64) -> f64 {
         self.system().essential_abscissa(tau)
     }
