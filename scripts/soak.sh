@@ -47,6 +47,6 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_CASES=100 tests --test referee -- --test-threads=2 memory_and_latency
     SLIPMAP_CASES=10000 tests --test general_latency_random
     SLIPMAP_CASES=100000 tests --test general_random
-    SLIPMAP_CASES=200 tests --test best_general
+    SLIPMAP_CASES=1000 tests --test best_general
 done
 say "$round rounds"

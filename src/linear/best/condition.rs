@@ -21,6 +21,8 @@ use crate::model::elementary::{norm, pow};
 
 /// Steps of Newton's method towards a zero of D′ or D″.
 const MOST_STEPS: u32 = 30;
+/// Roots nearer to one another than this, relative, are one and the same.
+const ONE_PLACE: f64 = 1e-8;
 /// A pair is off the real axis by more than this, relative.
 const OFF_AXIS: f64 = 1e-9;
 
@@ -100,11 +102,21 @@ pub(super) struct Condition {
 }
 
 impl Condition {
-    /// What is active at a place nearby.
+    /// What is active at a place nearby; none where something is lost, or two of it became one.
     pub(super) fn moved(&self, search: &Search<impl Family>, place: Place) -> Option<Self> {
         let followed = self.followed.iter().map(|f| f.moved(search, place));
-        Some(Self {
+        let moved = Self {
             followed: followed.collect::<Option<_>>()?,
+        };
+        moved.apart().then_some(moved)
+    }
+
+    /// Whether what is followed lies in different places.
+    fn apart(&self) -> bool {
+        let all = || self.followed.iter().map(|f| f.lambda());
+        all().enumerate().all(|(i, p)| {
+            let near = |q: Complex64| norm(p - q) <= ONE_PLACE * (1.0 + norm(p));
+            !all().skip(i + 1).any(near)
         })
     }
 

@@ -98,11 +98,11 @@ fn optimum<F: Family>(
     let imaginary = condition.followed.iter().map(|f| f.lambda().im.abs());
     let mut frequencies: Vec<f64> = imaginary.collect();
     frequencies.sort_by(f64::total_cmp);
-    // All roots right of a line to the left are those that are followed: none of them lies farther
-    // right than rounding puts it.
+    // All roots right of a line to the left are those that are followed, and right of a line to the
+    // right there is none.
     let setting = search.family.setting(place);
     let blur = setting.map_or(f64::NAN, |setting| condition.blur::<F>(&setting, place.tau));
-    let alone = decided(search, place, abscissa, blur, (-1.0, condition.roots()));
+    let count = |side, expected| decided(search, place, abscissa, blur, (side, expected)).is_some();
     Optimum {
         gain: place.gain,
         tau: place.tau,
@@ -112,7 +112,7 @@ fn optimum<F: Family>(
             (false, false) => kind(&condition.followed),
             _ => Kind::Edge,
         },
-        certified: alone.is_some(),
+        certified: count(-1.0, condition.roots()) && count(1.0, 0),
         margin: 4.0 * (blur + f64::EPSILON * (1.0 + abscissa.abs())),
     }
 }
