@@ -11,7 +11,7 @@ use crate::linear::stable_delays::{StableInterval, signed_distance};
 pub struct Change {
     /// The delay.
     pub tau: f64,
-    /// By how much the number grows: ±2 for a pair, ±1 for a real root.
+    /// The change of the number of unstable roots: ±2 for a pair, ±1 for a real root.
     pub by: i8,
 }
 
@@ -25,7 +25,7 @@ pub struct Changes<'l> {
 }
 
 impl<'l> Changes<'l> {
-    /// From the delay `tau` on.
+    /// The changes from the delay `tau` on.
     pub(super) fn from(line: &'l DelayLine, tau: f64) -> Self {
         Self {
             line,
@@ -65,7 +65,7 @@ impl Iterator for Changes<'_> {
     }
 }
 
-/// More changes than this are not gone through: near a touch there can be any number of them.
+/// The most changes that are gone through: near a touch there can be any number of them.
 const MOST_CHANGES: u64 = 1 << 20;
 
 /// The stable intervals of a line by growing delay.
@@ -76,7 +76,7 @@ pub struct StableIntervals<'l> {
     left: u64,
     n: i64,
     from: f64,
-    /// Beyond it nothing is stable.
+    /// The delay beyond which nothing is stable.
     last: f64,
 }
 
@@ -106,7 +106,7 @@ impl Iterator for StableIntervals<'_> {
 }
 
 impl StableIntervals<'_> {
-    /// There were too many changes to go through: further intervals may have been left out.
+    /// Whether there were too many changes to go through: further intervals may have been left out.
     #[must_use]
     pub fn gave_up(&self) -> bool {
         self.left == 0
