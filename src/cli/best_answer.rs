@@ -27,28 +27,28 @@ pub(super) struct BestAnswer {
     /// How far the recommended setting, the robust one where there is one, is from the boundary of
     /// stability.
     margins: Margins,
-    /// Its critical velocity; null without a friction law.
+    /// The critical velocity of the recommended setting; null without a friction law.
     vc: Option<CriticalVelocity>,
 }
 
 /// A robust setting.
 #[derive(Debug, Serialize, ToSchema)]
 struct RobustOut {
-    /// By how much of them gain, delay and μ′ may be off.
+    /// The relative spread of gain, delay and μ′.
     spread: f64,
     alpha: f64,
     tau: f64,
     /// The spectral abscissa of the setting itself.
     abscissa: f64,
-    /// The largest one within the spread.
+    /// The largest spectral abscissa within the spread.
     worst_abscissa: f64,
-    /// The relaxation time there.
+    /// The relaxation time where the spectral abscissa is largest within the spread.
     worst_relaxation_time: f64,
     /// The relative changes of gain, delay and μ′ at which the decay is slowest.
     worst_at: [f64; 3],
-    /// Whether it is proved that none within the spread is larger.
+    /// Whether it is proved that no spectral abscissa within the spread is larger.
     certified: bool,
-    /// The largest one within the same spread around the best setting.
+    /// The largest spectral abscissa within the same spread around the best setting.
     worst_abscissa_of_best: f64,
 }
 
@@ -139,7 +139,7 @@ impl From<&Optimum> for OptimumNumbers {
 }
 
 impl BestAnswer {
-    /// What was found.
+    /// The answer for what was found.
     ///
     /// # Errors
     /// When a parameter of the setting is outside the model's range.

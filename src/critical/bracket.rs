@@ -229,9 +229,9 @@ fn lost_for_good<F: Followed>(
 
 /// What stick-slip does at a v0 above its end.
 enum Beyond<F> {
-    /// It is lost from every phase tried.
+    /// Stick-slip is lost from every phase tried.
     Lost,
-    /// It persists from at least one phase.
+    /// Stick-slip persists from at least one phase.
     Persists(Box<F>),
     /// The outcome from at least one phase is not known.
     Unknown,

@@ -234,7 +234,8 @@ pub(super) fn is_jump(
     !same || times_jump(before.mean_times(), after.mean_times(), step, options)
 }
 
-/// The same as `is_jump`, from the durations of mean cycles and slips alone.
+/// Whether a step was a jump as [`is_jump`] has it, by the durations of mean cycles and slips
+/// alone.
 pub(super) fn times_jump(
     before: [f64; 2],
     after: [f64; 2],
@@ -328,7 +329,8 @@ mod tests {
         continued_by(0.1, family, (v0, x), slips)
     }
 
-    /// The same with steps of at most `largest_step`.
+    /// Continues a branch of a synthetic map from `v0`, where its orbit is near `x`, with steps of
+    /// at most `largest_step`.
     fn continued_by(
         largest_step: f64,
         family: Family,

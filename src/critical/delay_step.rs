@@ -98,7 +98,7 @@ impl<'o> Neighbour<'o> {
         }
     }
 
-    /// This neighbour, with the knowledge of `other`, which was searched from scratch at the same
+    /// This neighbour with the knowledge of `other`, which was searched from scratch at the same
     /// cell.
     pub(super) fn like(mut self, other: &Self) -> Self {
         self.decided = other.decided;

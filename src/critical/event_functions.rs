@@ -43,13 +43,13 @@ pub(super) enum Event {
 }
 
 impl Event {
-    /// Whether stick-slip or the model may end there. Other events only change the kind of
+    /// Whether stick-slip or the model may end at this event. Other events only change the kind of
     /// stick-slip.
     pub(super) const fn may_end(self) -> bool {
         matches!(self, Self::Graze(_) | Self::LiftOff | Self::StickVanishes)
     }
 
-    /// Whether its event function is a velocity; else it is a force or a time.
+    /// Whether the event function of this event is a velocity; else it is a force or a time.
     const fn of_velocity(self) -> bool {
         matches!(self, Self::Graze(_) | Self::NewStop)
     }
@@ -72,7 +72,7 @@ pub(super) struct EventFunctions {
 }
 
 impl EventFunctions {
-    /// Nothing is known.
+    /// Event functions of which nothing is known.
     pub(super) const UNKNOWN: Self = Self {
         depth: [f64::NAN; MOST_SLIPS],
         load: f64::NAN,
@@ -94,7 +94,7 @@ impl EventFunctions {
         one
     }
 
-    /// Each with its event: (E1) to (E5) in order.
+    /// Each event function with its event: (E1) to (E5) in order.
     pub(super) fn each(&self) -> [(Event, f64); EVENTS] {
         let others = [
             (Event::LiftOff, self.load),
@@ -119,7 +119,7 @@ impl EventFunctions {
         }
     }
 
-    /// `f` of each of these and the same one of `other`.
+    /// `f` of each event function and the same one of `other`.
     pub(super) fn with(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             depth: std::array::from_fn(|slip| f(self.depth[slip], other.depth[slip])),

@@ -9,7 +9,7 @@ use super::options::ContinuationOptions;
 pub(super) struct Iterates([EventFunctions; 3]);
 
 impl Iterates {
-    /// Before the first period.
+    /// The iterates before the first period.
     pub(super) const NONE: Self = Self([EventFunctions::UNKNOWN; 3]);
 
     /// Whether no period was added yet.

@@ -323,8 +323,8 @@ fn look_beyond(
     (next, motion, beyond)
 }
 
-/// By simulation, from the first of some motions whose stick-slip is sustained; from low velocities
-/// where none is.
+/// The critical velocity by simulation, from the first of some motions whose stick-slip is
+/// sustained; from low velocities where none is.
 fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> Searched {
     let usual = &problem.options.ramp;
     for motion in motions {
@@ -346,7 +346,7 @@ fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> Se
     simulated(problem)
 }
 
-/// By simulation from low velocities on.
+/// The critical velocity by simulation from low velocities on.
 fn simulated(problem: &Problem) -> Searched {
     let usual = &problem.options.ramp;
     let search = |options: &RampOptions, tolerance: f64| {

@@ -9,15 +9,15 @@ use crate::slip::outcome::Observer;
 /// How long to wait for a block that slips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Waiting {
-    /// For a few cycles: v0 glides on.
+    /// A wait of a few cycles: v0 glides on.
     Brief,
-    /// Until the minima of ẋ have not fallen for three windows of time.
+    /// A wait until the minima of ẋ have not fallen for three windows of time.
     Short,
     /// A short wait, in which stick-slip that does not repeat is followed for many cycles.
     Lasting,
-    /// Until the minima of ẋ have not fallen for ten windows of time.
+    /// A wait until the minima of ẋ have not fallen for ten windows of time.
     Long,
-    /// Until the outcome of the motion is known.
+    /// A wait until the outcome of the motion is known.
     Patient,
 }
 
@@ -206,11 +206,11 @@ pub(super) struct Sticking<'o> {
     options: &'o SwitchOnOptions,
     /// How long to wait for stick-slip to repeat.
     patience: f64,
-    /// The time until which to wait for it.
+    /// The time until which to wait for stick-slip to repeat.
     until: f64,
     now: f64,
     released: f64,
-    /// How often it was released after a long slip.
+    /// How often the block was released after a long slip.
     returns: u32,
     /// Whether sliding is linearly stable.
     slides: bool,

@@ -173,7 +173,7 @@ impl Problem {
 pub(super) enum NoStart {
     /// N ≤ 0.
     LiftOff,
-    /// Stick-slip is not sustained there.
+    /// Stick-slip is not sustained at the start velocity.
     NotSustained,
 }
 
@@ -189,7 +189,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All, in the order of their numbers in a map.
+    /// All methods, in the order of their numbers in a map.
     pub const ALL: [Self; 3] = [Self::GrazeSlip, Self::GrazeOrbit, Self::Simulation];
 
     /// The name in maps and messages.
@@ -223,7 +223,7 @@ pub struct CriticalVelocity {
     pub transition: Transition,
     /// The method that gave the answer.
     pub method: Method,
-    /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
+    /// The smallest v0 at which N ≤ 0 occurs, where lift-off ends stick-slip.
     pub v_liftoff: f64,
     /// Time stuck in a period at v_c.
     pub stick_time: f64,
@@ -309,7 +309,7 @@ impl CriticalVelocity {
         }
     }
 
-    /// N ≤ 0 from `v0` on.
+    /// The answer where N ≤ 0 from `v0` on.
     pub(super) fn of_lift_off(v0: f64, method: Method) -> Self {
         Self {
             vc_lower: v0,

@@ -13,8 +13,8 @@ use crate::slip::watch::follow;
 pub enum Regime {
     /// Stick-slip goes on, periodically.
     Periodic,
-    /// It went on for the whole waiting time, in cycles that do not repeat. It may still be lost by
-    /// chance.
+    /// Stick-slip went on for the whole waiting time, in cycles that do not repeat. It may still be
+    /// lost by chance.
     Irregular,
     /// N ≤ 0.
     LiftOff,
@@ -59,12 +59,12 @@ pub(super) struct Response {
     /// Time from the shallowest stop of the last period to the minimum of ẋ that it cut off, see
     /// [`crate::slip::step::Step::minimum_beyond_stop`].
     pub to_minimum: f64,
-    /// How far below 0 that minimum is, ≥ 0.
+    /// How far below 0 the minimum of ẋ is that the shallowest stop cut off, ≥ 0.
     pub depth: f64,
 }
 
 impl Response {
-    /// Whether both this one and `other` are periodic, with the same number of slips in a period.
+    /// Whether this response and `other` are periodic, with the same number of slips in a period.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let periodic = |response: &Self| response.regime == Regime::Periodic;
         periodic(self) && periodic(other) && self.summary.slips == other.summary.slips
@@ -75,8 +75,8 @@ impl Response {
         self.regime.persists()
     }
 
-    /// Its event functions, as far as simulation sees them: the depth of the shallowest stop, the
-    /// smallest load, and the time of all sticks of a period together.
+    /// The event functions of this response, as far as simulation sees them: the depth of the
+    /// shallowest stop, the smallest load, and the time of all sticks of a period together.
     pub(super) fn event_functions(&self) -> EventFunctions {
         let mut depth = [f64::NAN; MOST_SLIPS];
         depth[0] = self.depth;
@@ -88,7 +88,7 @@ impl Response {
         }
     }
 
-    /// The durations of its mean cycle and slip.
+    /// The durations of the mean cycle and slip of this response.
     pub(super) fn mean_times(&self) -> [f64; 2] {
         let slips = f64::from(self.summary.slips.max(1));
         [self.summary.period / slips, self.summary.slip_time / slips]
@@ -104,7 +104,7 @@ pub(super) struct Observation<'o> {
 }
 
 impl<'o> Observation<'o> {
-    /// For `v0`, reached by a relative step.
+    /// The observation at `v0`, reached by a relative `step`.
     pub(super) fn after(options: &'o RampOptions, v0: f64, step: f64) -> Self {
         let how = Self::new(options, step);
         Self {
@@ -117,7 +117,7 @@ impl<'o> Observation<'o> {
         }
     }
 
-    /// After a relative step of v0.
+    /// The observation after a relative `step` of v0.
     pub(super) fn new(options: &'o RampOptions, step: f64) -> Self {
         let careful = step <= options.careful || !step.is_finite();
         Self {
@@ -133,7 +133,7 @@ impl<'o> Observation<'o> {
         }
     }
 
-    /// After a relative step of v0, for as long as at the end of a search.
+    /// The observation after a relative `step` of v0, for as long as at the end of a search.
     pub(super) fn at_length(options: &'o RampOptions, step: f64) -> Self {
         Self {
             waiting: Waiting::Long,

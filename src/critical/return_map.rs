@@ -13,11 +13,12 @@ pub(super) struct Cycle {
     /// The depth of the stop, ≥ 0: how far below 0 the minimum of ẋ lies that it cut off, or above
     /// 0 the maximum of a slip backwards. 0 where the stop is a graze.
     pub depth: f64,
-    /// Time from the stop to that minimum.
+    /// Time from the stop to the minimum of ẋ that it cut off, or to the maximum of a slip
+    /// backwards.
     pub to_minimum: f64,
     /// Duration of the slip.
     pub slip: f64,
-    /// Duration of the stick after it.
+    /// Duration of the stick after the slip.
     pub stick: f64,
     /// The smallest load.
     pub n_min: f64,
@@ -77,12 +78,12 @@ impl Period {
         Self::new(1, [cycle; MOST_SLIPS])
     }
 
-    /// Its cycles.
+    /// The cycles of the period.
     pub(super) fn cycles(&self) -> &[Cycle] {
         &self.cycles[..self.slips]
     }
 
-    /// The durations of its mean cycle and slip.
+    /// The durations of the mean cycle and slip of the period.
     pub(super) fn mean_times(&self) -> [f64; 2] {
         let slips = self.slips as f64;
         [self.slip_time() + self.stick_time(), self.slip_time()].map(|time| time / slips)
@@ -120,7 +121,7 @@ impl Period {
         self
     }
 
-    /// Its event functions.
+    /// The event functions of the period.
     pub(super) fn event_functions(&self) -> EventFunctions {
         let least = |of: fn(&Cycle) -> f64| self.cycles().iter().map(of).fold(f64::NAN, f64::min);
         let mut depth = [f64::NAN; MOST_SLIPS];
@@ -145,7 +146,7 @@ pub(super) enum NoReturn {
     StopMissed,
     /// N ≤ 0.
     LiftOff,
-    /// It was released backwards, or took too many steps.
+    /// The block was released backwards, or took too many steps.
     Undefined,
     /// Periods did not come to rest.
     NotSettled,

@@ -19,12 +19,12 @@ pub(super) enum Chance {
 pub(super) struct Ramped {
     /// The largest v0 at which stick-slip persists; none where it was not found anywhere.
     pub last: Option<Response>,
-    /// The smallest v0 above that at which it does not; none where it persists to the end of the
-    /// range.
+    /// The smallest v0 above `last` at which stick-slip does not persist; none where it persists to
+    /// the end of the range.
     pub lost: Option<Response>,
     /// Whether the search came to the end of the range, or to two v0 as near as required.
     pub complete: bool,
-    /// What part chance had in it.
+    /// What part chance had in the search.
     pub chance: Chance,
     /// Whether sticks shorten so fast that none is left just beyond the last v0.
     pub vanish: bool,
@@ -63,13 +63,13 @@ impl Search {
         self.ramped.last.map_or(0.0, |last| last.v0)
     }
 
-    /// The v0 at which it was lost, or is not known to persist.
+    /// The v0 at which stick-slip was lost, or is not known to persist.
     pub(super) fn lost(&self) -> f64 {
         let lost = self.ramped.lost.map_or(0.0, |lost| lost.v0);
         lost.max(self.persists())
     }
 
-    /// Whether it ended by N ≤ 0.
+    /// Whether the search ended by N ≤ 0.
     pub(super) fn lifts_off(&self) -> bool {
         let lost = self.ramped.lost.as_ref();
         lost.is_some_and(|lost| lost.regime == Regime::LiftOff)

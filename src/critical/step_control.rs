@@ -63,10 +63,10 @@ pub(super) struct StepControl<'o> {
 /// What is tried near a v0 that failed, and how near, as a share of the step that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Retry {
-    /// A step of that size, beyond it: for continuation, which needs no bracket.
+    /// A step of that size beyond the v0 that failed: for continuation, which needs no bracket.
     Beyond(f64),
-    /// That v0 once more: for simulation, which ends between one v0 that failed and one that did
-    /// not.
+    /// The v0 that failed, once more: for simulation, which ends between one v0 that failed and one
+    /// that did not.
     Same(f64),
 }
 

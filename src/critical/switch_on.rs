@@ -13,10 +13,11 @@ use crate::slip::watch::follow;
 /// When control is switched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Phase {
-    /// At this time after a release, modulo the uncontrolled period; in units of √(M/κ).
+    /// Control is switched on at this time after a release, modulo the uncontrolled period; in
+    /// units of √(M/κ).
     After(f64),
-    /// At this number of phases, evenly over the uncontrolled period: stick-slip survives if it
-    /// does at one of them.
+    /// Control is switched on at this number of phases, evenly over the uncontrolled period:
+    /// stick-slip survives if it does at one of them.
     Worst(u32),
 }
 
@@ -25,7 +26,7 @@ pub enum Phase {
 pub struct Scan {
     /// The smallest v0, in units of μ_S N0/√(κM).
     pub v_min: f64,
-    /// The largest one.
+    /// The largest v0, in units of μ_S N0/√(κM).
     pub v_max: f64,
     /// The number of v0 that are tried before edges are refined, evenly spaced in logarithms.
     /// Windows narrower than the spacing can be missed.
@@ -34,7 +35,7 @@ pub struct Scan {
     pub precision: f64,
     /// The most steps of the integrator at one v0.
     pub steps: u64,
-    /// The most at all v0 together, some seconds: the scan ends there, undecided.
+    /// The most steps at all v0 together, some seconds: the scan ends there, undecided.
     pub total_steps: u64,
 }
 

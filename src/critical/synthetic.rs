@@ -27,7 +27,7 @@ pub(super) fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) ->
     }
 }
 
-/// The same with the friction law of the letter's Fig. 3.
+/// A problem with M = κ = N0 = μ_S = 1 and the friction law of the letter's Fig. 3.
 pub(super) fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
     let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
     problem(law, alpha_v, alpha_n, tau)
@@ -57,7 +57,7 @@ pub(super) fn logistic_pair(v0: f64) -> f64 {
     (v0 + 1.0 + ((v0 - 3.0) * (v0 + 1.0)).sqrt()) / (2.0 * v0)
 }
 
-/// The state of such a map.
+/// The state of a map of a [`Family`].
 #[derive(Debug, Clone)]
 pub(super) struct Synthetic {
     pub family: Family,

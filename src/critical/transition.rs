@@ -20,17 +20,17 @@ pub enum Transition {
     Irregular,
     /// N ≤ 0 on the way: the model ends at `v_liftoff`, and there is no v_c.
     LiftOff,
-    /// It survives up to the largest v0 that was tried.
+    /// Stick-slip survives up to the largest v0 that was tried.
     Persists,
     /// No stick-slip is sustained at any v0 that was tried: v_c = 0.
     Never,
-    /// It does not survive switching on above v_c. The protocol [`super::switch_on`] does not tell
-    /// how it ends.
+    /// Stick-slip does not survive switching on above v_c. The protocol [`super::switch_on`] does
+    /// not tell how it ends.
     Lost,
 }
 
 impl Transition {
-    /// All, in order.
+    /// All transitions, in the order of their numbers in a map.
     pub const ALL: [Self; 8] = [
         Self::Grazing,
         Self::Fold,
@@ -104,7 +104,7 @@ pub(super) enum Sequel {
     Periodic(usize),
     /// Stick-slip that does not repeat.
     Irregular,
-    /// Not known.
+    /// What follows is not known.
     Undetermined(Undetermined),
 }
 

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-/// Trials of continuation, and steps of the integrator in them.
+/// Trials of continuation, and the steps that the integrator takes in these trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Work {
     pub trials: u64,

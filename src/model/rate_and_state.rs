@@ -1,15 +1,15 @@
 //! Rate-and-state friction: a coefficient that depends on the velocity and on a state θ.
 //!
 //! ```text
-//! μ = μ₀ + A ln(v/v*) + B ln(v*θ/D),   θ̇ = 1 − vθ/D − cμθ Ṅ/(B N)                           (1)
+//! μ = μ₀ + A ln(v/v*) + B ln(v* θ/D),   θ̇ = 1 − v θ/D − c μ θ Ṅ/(B N)                       (1)
 //! α = A N/(v₀ √(κM)),   β = B N/(v₀ √(κM)),   T = D √(κ/M)/v₀                                (2)
 //! κ/κ_c = T/[(β − α)(1 + 1/(αT))]                                                            (3)
 //! ```
 //!
 //! A is the direct effect, B the effect of evolution, D the slip distance. c says how much a change
-//! of the load changes the state (Linker and Dieterich 1992); with c = 0 it does not. Equations (2)
-//! and (3) are those of section 7 of the derivation for general systems. κ_c is the stiffness below
-//! which steady sliding without control is unstable.
+//! of the load changes the state (Linker and Dieterich 1992); with c = 0 it does not. (1)
+//! linearised about sliding at v₀ depends on α, β, T and c alone. κ_c is the stiffness below which
+//! steady sliding without control is unstable.
 
 use super::elementary::ln;
 use super::{ModelError, Oscillator, SlidingPoint};

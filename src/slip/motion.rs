@@ -344,8 +344,7 @@ mod tests {
     use super::*;
     use crate::model::FrictionLaw;
 
-    /// Events of the letter's Fig. 3 (physics of the project, section 7): times of switch-on, and
-    /// of what follows.
+    /// Events of the letter's Fig. 3: times of switch-on, and of what follows.
     fn fig3(
         v0: f64,
         alpha_v: f64,

@@ -25,10 +25,10 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// How long pieces in progress may take after a stop; later ones are dropped.
 const GRACE: Duration = Duration::from_millis(1200);
 
-/// Where pieces go. Encoding happens on the computing threads, writing on the thread that called
-/// [`run`].
+/// The place where pieces go. Encoding happens on the computing threads, writing on the thread that
+/// called [`run`].
 pub trait Sink {
-    /// Encodes pieces; each thread has its own.
+    /// The encoder of pieces; each thread has its own.
     type Encoder: Encode;
     /// Why writing failed.
     type Error;
@@ -46,7 +46,7 @@ pub trait Sink {
         encoded: <Self::Encoder as Encode>::Encoded,
     ) -> Result<(), Self::Error>;
 
-    /// Called at intervals while no piece comes.
+    /// Does what is to be done at intervals while no piece comes.
     ///
     /// # Errors
     /// Ends the sweep.
@@ -54,7 +54,8 @@ pub trait Sink {
         Ok(())
     }
 
-    /// Makes all written pieces durable. Called at the end of the sweep, even after an error.
+    /// Makes all written pieces durable. The engine calls this at the end of the sweep, even after
+    /// an error.
     ///
     /// # Errors
     /// Becomes the error of the sweep, unless it already has one.
@@ -86,7 +87,7 @@ pub trait Encode: Send + 'static {
 /// Why a sweep ended before its last piece.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError<E> {
-    /// It was asked to stop.
+    /// The sweep was asked to stop.
     #[error("interrupted")]
     Interrupted,
     /// The sink could not write.
@@ -98,7 +99,7 @@ pub enum RunError<E> {
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
-        /// How many were asked for.
+        /// How many threads were asked for.
         threads: usize,
         /// What the system said.
         reason: String,
@@ -146,9 +147,9 @@ pub fn run_here<S: Sink>(
 /// Where pieces are computed.
 #[derive(Clone, Copy)]
 enum On {
-    /// On the calling thread.
+    /// The calling thread computes the pieces.
     This,
-    /// On this many other threads.
+    /// This many other threads compute the pieces.
     Threads(usize),
 }
 
@@ -253,7 +254,8 @@ fn start<S: Sink>(
     Ok(receiver)
 }
 
-/// The work of one thread: until no piece is left, `stop` is set, or the receiver is gone.
+/// The work of one thread: it goes on until no piece is left, `stop` is set, or the receiver is
+/// gone.
 fn work<C: Encode>(
     plan: &Plan,
     todo: &Todo,

@@ -18,7 +18,8 @@ options! {
         jump_of_slip: f64 = 0.05, in 1e-9..=0.5;
         /// How well a continuation has to meet an end that was found from scratch.
         meets: f64 = 3e-5, in 1e-9..=1e-3;
-        /// How well the times in slip have to meet there: they tell how many slips a period has.
+        /// How well the times in slip have to meet at such an end: they tell how many slips a
+        /// period has.
         meets_in_time: f64 = 1e-2, in 1e-9..=0.5;
 
         /// The error assumed for the prediction of an end before any error is known.
@@ -30,11 +31,11 @@ options! {
         graze_least: f64 = 1e-5, in 1e-9..=0.1;
         /// How far below the v0 at which a stick vanishes a cell starts at first.
         vanish_first: f64 = 3e-3, in 1e-9..=0.1;
-        /// How far below the v0 at which a stick vanishes it starts at least.
+        /// How far below the v0 at which a stick vanishes a cell starts at least.
         vanish_least: f64 = 1e-3, in 1e-9..=0.1;
         /// How far below lift-off a cell starts at first.
         lift_off_first: f64 = 3e-3, in 1e-9..=0.1;
-        /// How far below lift-off it starts at least.
+        /// How far below lift-off a cell starts at least.
         lift_off_least: f64 = 2e-5, in 1e-9..=0.1;
         /// The largest distance below the predicted end at which a cell starts at first, and its
         /// first step of v0.
@@ -42,9 +43,10 @@ options! {
         /// Without a second past a cell starts below its predicted end by at least this share of
         /// the change of the end.
         off_by_change: f64 = 0.15, in 0.0..=1.0;
-        /// Where no period is found from a start, it is moved farther off, by these factors.
+        /// Where no period is found from a start, the start is moved farther off, by these factors.
         farther: [f64; 2] = [4.0, 30.0], in 1.0..=1_000.0;
-        /// Where that does not help, it is moved off by this many times [`Self::farthest`].
+        /// Where [`Self::farther`] does not help, the start is moved off by this many times
+        /// [`Self::farthest`].
         farthest_of_all: f64 = 2.0, in 1.0..=9.0;
         /// A cell starts this many times as far below its end as the transient of the cell before
         /// needed.
@@ -53,22 +55,24 @@ options! {
         nearer: f64 = 0.5, in 0.01..=1.0;
         /// Cells in a row whose ends may be located with slopes of a cell before.
         most_borrowed: u32 = 8, in 0..=128;
-        /// How far below its end the next cell then starts, so that it can have its own slopes.
+        /// How far below its end a cell starts after [`Self::most_borrowed`] cells, so that it can
+        /// have its own slopes.
         for_slopes: f64 = 1e-4, in 1e-9..=1e-2;
 
         /// The most ends in a row that are accepted without following the block beyond them.
         most_unseen: u32 = 3, in 0..=128;
-        /// How far such an end may be from its prediction.
+        /// How far an end that is accepted unseen may be from its prediction.
         as_expected: f64 = 3e-5, in 1e-9..=1e-2;
-        /// How much the time in slip of such a cell may differ from that of the last cell that was
-        /// followed beyond its end.
+        /// How much the time in slip of a cell with an unseen end may differ from that of the last
+        /// cell that was followed beyond its end.
         same_slip: f64 = 0.02, in 1e-9..=0.5;
-        /// How clearly stick-slip has to end there: a lower bound of the minima of ẋ beyond, over
-        /// v0.
+        /// How clearly stick-slip has to end at the last end that was followed: a lower bound of
+        /// the minima of ẋ beyond it, over v0.
         clear: f64 = 2e-3, in 1e-9..=1.0;
-        /// That minimum has to exceed its own change since then by this factor.
+        /// The minimum of [`Self::clear`] has to exceed its own change since the last end that was
+        /// followed by this factor.
         caution: f64 = 6.0, in 1.0..=1_000.0;
-        /// The largest change of the delay to such an end where a stick vanishes.
+        /// The largest change of the delay to an unseen end where a stick vanishes.
         small_change: f64 = 0.03, in 0.0..=1.0;
 
         /// The largest change of the delay from cell to cell: a past is known for two delays.

@@ -77,11 +77,13 @@ options! {
         /// The shortest mean cycle of the same kind of stick-slip, over the one before and the
         /// change of v0: sticks shorten as v0 grows.
         shorter_cycle: f64 = 0.8, in 0.1..=0.99;
-        /// The longest one.
+        /// The longest mean cycle of the same kind of stick-slip, over the one before and the
+        /// change of v0.
         longer_cycle: f64 = 1.25, in 1.01..=10.0;
         /// The shortest mean slip of the same kind of stick-slip, over the one before.
         shorter_slip: f64 = 0.8, in 0.1..=0.99;
-        /// The longest one: slips lengthen near a graze.
+        /// The longest mean slip of the same kind of stick-slip, over the one before: slips
+        /// lengthen near a graze.
         longer_slip: f64 = 1.4, in 1.01..=10.0;
         /// The most v0 that are tried on the way to one event. Some ten are enough, unless steps
         /// fail again and again.
@@ -100,11 +102,11 @@ options! {
         /// long as [`Self::near`].
         last_step: f64 = 3.0, in 1.0..=100.0;
 
-        /// Below this v0, in N0/√(κM), errors of the elongation matter for the depth of a stop,
-        /// which has to be known compared with v0: the tolerance falls in proportion.
+        /// The v0, in N0/√(κM), below which errors of the elongation matter for the depth of a
+        /// stop, which has to be known compared with v0: the tolerance falls in proportion.
         slow: f64 = 0.03, in 0.0..=10.0;
-        /// Above this v0 a slip ends by a difference of forces that falls as 1/v0, while speeds
-        /// grow as v0: the tolerance of the check falls as 1/v0².
+        /// The v0, in N0/√(κM), above which a slip ends by a difference of forces that falls as
+        /// 1/v0, while speeds grow as v0: the tolerance of the check falls as 1/v0².
         fast: f64 = 1.0, in 1e-3..=1e6;
         /// The tolerance of the check of an event, over [`Self::tolerance`].
         finer: f64 = 1e-2, in 1e-6..=1.0;

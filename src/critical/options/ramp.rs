@@ -6,9 +6,9 @@ options! {
     RampOptions {
         /// The first step of v0. Large ones are cheap; those that lose stick-slip are undone.
         first: f64 = 0.6, in 1e-6..=10.0;
-        /// The largest one.
+        /// The largest step of v0.
         largest: f64 = 0.6, in 1e-6..=10.0;
-        /// The largest one where cycles do not show whether stick-slip is of the same kind.
+        /// The largest step of v0 where cycles do not show whether stick-slip is of the same kind.
         unseen: f64 = 0.1, in 1e-6..=10.0;
         /// The last step, the precision of v_c by simulation. Searches have to agree to
         /// `GRAZE_PRECISION`.
@@ -52,14 +52,14 @@ options! {
         /// Stick-slip that survives so often where it had been lost, on a short way, is lost by
         /// chance.
         most_passed: u32 = 6, in 1..=1_000;
-        /// The length of that short way.
+        /// The length of the short way of [`Self::most_passed`].
         short_way: f64 = 1e-3, in 1e-9..=0.1;
         /// The last step from irregular stick-slip: near its end chance decides at each v0 whether
         /// it persists.
         last_irregular: f64 = 2e-5, in 1e-12..=1e-2;
         /// Steps below this carry a motion along its attractor.
         careful: f64 = 0.02, in 1e-6..=1.0;
-        /// How well cycles have to repeat after larger ones.
+        /// How well cycles have to repeat after steps larger than [`Self::careful`].
         roughly: f64 = 1e-4, in 1e-12..=1e-2;
         /// After a step no larger than this an end is near: irregular stick-slip is held for long.
         final_step: f64 = 2e-3, in 1e-9..=1.0;
@@ -72,11 +72,11 @@ options! {
         /// Stick-slip that does not repeat within the first number of cycles, plus the second for
         /// each unit of the delay, is irregular. These are for a v0 that glides.
         cycles_gliding: [f64; 2] = [4.0, 0.5], in 0.0..=1e4;
-        /// The same after usual steps of v0.
+        /// The numbers of [`Self::cycles_gliding`] after usual steps of v0.
         cycles: [f64; 2] = [12.0, 1.0], in 0.0..=1e4;
-        /// The same where stick-slip is followed for long.
+        /// The numbers of [`Self::cycles_gliding`] where stick-slip is followed for long.
         cycles_at_length: [f64; 2] = [24.0, 1.0], in 0.0..=1e4;
-        /// The same near the end of stick-slip.
+        /// The numbers of [`Self::cycles_gliding`] near the end of stick-slip.
         cycles_near_end: [f64; 2] = [60.0, 4.0], in 0.0..=1e4;
         /// A slip goes on for good if there was no stop in the last part of the waiting time, this
         /// share of it.
@@ -89,7 +89,8 @@ options! {
         /// Windows without a fall after which a slip counts as going on, where it is followed
         /// briefly. A window is a delay and two periods of free oscillation.
         windows: u32 = 3, in 1..=1_000;
-        /// The same where a slip is followed for long.
+        /// Windows without a fall after which a slip counts as going on, where it is followed for
+        /// long.
         windows_at_length: u32 = 10, in 1..=1_000;
         /// Windows without a fall at the end of a motion after which a slip goes on.
         windows_at_last: u32 = 6, in 1..=1_000;
@@ -98,15 +99,17 @@ options! {
         tolerance: f64 = 1e-8, in 1e-14..=1e-3;
         /// The first step of a search that confirms another one.
         confirm_first: f64 = 0.2, in 1e-6..=10.0;
-        /// Error allowed in a step of the integrator there.
+        /// Error allowed in a step of the integrator in a search that confirms another one.
         confirm_tolerance: f64 = 1e-10, in 1e-14..=1e-3;
         /// Steps of v0 that glides.
         glide_step: f64 = 0.01, in 1e-6..=1.0;
-        /// The most steps of the integrator of such a search: it stops at many more v0.
+        /// The most steps of the integrator in a search in which v0 glides: it stops at many more
+        /// v0.
         glide_steps: u64 = 30_000_000, in 100..=1_000_000_000_000;
         /// How far below the end v0 stops gliding.
         glide_end: f64 = 0.02, in 1e-6..=0.9;
-        /// The most v0 of such a search: more than it takes from the lowest to the largest.
+        /// The most v0 of a search in which v0 glides: more than it takes from the lowest to the
+        /// largest.
         glide_trials: u32 = 3_000, in 10..=10_000_000;
         /// Sticks shorter than this are lost to rounding as v0 grows: how they end is not decided.
         vanishing_stick: f64 = 1e-6, in 1e-15..=1e-2;

@@ -5,9 +5,10 @@
 //!                                |δ_i| ≤ spread                                            (1)
 //! ```
 //!
-//! The maximum is taken over corners and middles of the box, and over every place of it that a
-//! proof of W turned out to need: the stability radius at the decay rate −W either is at least the
-//! spread, or names a place in the box that decays more slowly, and the search goes on with it.
+//! k is the factor of both gains. The maximum is taken over corners and middles of the box, and
+//! over every place of it that a proof of W turned out to need: the stability radius at the decay
+//! rate −W either is at least the spread, or names a place in the box that decays more slowly, and
+//! the search goes on with it.
 
 use super::descend::descend;
 use super::letter::Letter;
@@ -22,8 +23,8 @@ use crate::model::Groups;
 const FINE: f64 = 1e-6;
 /// Places that a proof may add.
 const MOST_PLACES: usize = 24;
-/// By what part of it W is proved to be larger, at most, than at the places it is taken over; the
-/// second where the first takes too long.
+/// The relative gap allowed between the proved W and the largest sampled one; the second value
+/// where the first proof takes too long.
 const SLACK: [f64; 2] = [1e-3, 1e-2];
 
 /// A setting with the slowest decay around it.
@@ -48,7 +49,8 @@ struct Worst<'s> {
     finder: RootFinder,
     search: &'s Search<Letter>,
     spread: f64,
-    /// Where it is looked at, in units of the spread; the worst one last time first.
+    /// Where the abscissa is looked at, in units of the spread; the place that was worst last comes
+    /// first.
     places: Vec<Changes>,
 }
 

@@ -1,4 +1,5 @@
-//! The count of unstable roots at a delay, from the crossings of its line.
+//! The count of unstable roots at a delay, from the crossings of its line: (5) of
+//! [`line`](super::line).
 
 use super::line::{DelayLine, Passage};
 use super::reason::Reason;
@@ -6,7 +7,7 @@ use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::Crossing;
 
 impl DelayLine {
-    /// 2 Σ s_j #{k: τ_{j,k} < τ}, and the passage of the real root.
+    /// 2 Σ s_j #{k: τ_{j,k} < τ} of (5) in `line`, and the passage of the real root.
     #[inline]
     pub(super) fn change_until(&self, tau: f64) -> i64 {
         let mut change = 0;
@@ -28,7 +29,7 @@ impl DelayLine {
         self.reason.filter(finite)
     }
 
-    /// (5), with whether `tau` ≥ 0 lies within rounding of a change.
+    /// n(τ) of (5) in `line`, with whether `tau` ≥ 0 lies within rounding of a change.
     #[must_use]
     pub fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count {
         Count {
@@ -37,7 +38,7 @@ impl DelayLine {
         }
     }
 
-    /// (5). On a crossing itself the pair on the axis is not counted as moved.
+    /// n(τ) of (5) in `line`. On a crossing itself the pair on the axis is not counted as moved.
     #[inline]
     #[must_use]
     pub fn n_unstable(&self, tau: f64) -> u64 {
@@ -65,7 +66,7 @@ impl DelayLine {
                 .any(|crossing| crossing.marginal_at(tau, |delay| allowed(crossing, delay)))
     }
 
-    /// The distance from `delay`, one of those of `crossing`, up to which others are marginal.
+    /// The distance from `delay`, one of the delays of `crossing`, up to which delays are marginal.
     #[inline]
     #[must_use]
     pub fn marginal_distance(

@@ -12,13 +12,13 @@
 
 use super::polynomial::Polynomial;
 
-/// The highest degree that is taken.
+/// The highest degree of a polynomial whose zeros are isolated.
 pub(super) const MOST: usize = 8;
-/// Halvings of an interval.
+/// The most halvings of an interval.
 const DEEPEST: u32 = 40;
-/// Intervals looked at.
+/// The most intervals that are looked at.
 const MOST_INTERVALS: u32 = 120;
-/// Steps of Halley's method, with halvings between.
+/// The most steps of Halley's method, with halvings between.
 const MOST_STEPS: u32 = 60;
 /// Steps below this part of t are the last.
 const LAST_STEP: f64 = 1e-5;
@@ -26,7 +26,7 @@ const LAST_STEP: f64 = 1e-5;
 /// round numbers falls on the middle of an interval.
 const UNEVEN: f64 = 1.09375;
 
-/// 1/d.
+/// 1/d at the index d.
 const INVERSE: [f64; MOST + 1] = {
     let mut all = [0.0; MOST + 1];
     let mut d = 1;
@@ -52,8 +52,9 @@ pub(super) struct PositiveZeros {
 }
 
 impl PositiveZeros {
-    /// Of `f`, whose highest coefficient and constant are certain to differ from 0; none where some
-    /// zeros are too near to one another, or to the real axis, for rounding to tell.
+    /// The positive zeros of `f`, whose highest coefficient and constant are certain to differ from
+    /// 0; none where some zeros are too near to one another, or to the real axis, for rounding to
+    /// tell.
     #[inline]
     pub(super) fn of(f: &Polynomial) -> Option<Self> {
         let mut zeros = Self {
@@ -78,7 +79,7 @@ impl PositiveZeros {
         found.then_some(zeros)
     }
 
-    /// Them.
+    /// The zeros by falling size.
     #[inline]
     pub(super) fn all(&self) -> &[Enclosed] {
         &self.all[..self.count]
@@ -289,7 +290,8 @@ impl<const L: usize> Search<'_, L> {
         1.01 * sum
     }
 
-    /// The one zero within `low` < t < `high`, from `start`; `rising` where F is positive beyond.
+    /// Polishes the one zero within `low` < t < `high`, from `start`; `rising` where F is positive
+    /// beyond.
     #[inline]
     fn polish(&mut self, (mut low, mut high): (f64, f64), start: f64, rising: bool) -> bool {
         let mut t = start;
@@ -322,7 +324,7 @@ impl<const L: usize> Search<'_, L> {
         false
     }
 
-    /// The signs on both sides prove that the zero is within `radius`.
+    /// Whether the signs of F on both sides prove that the zero is within `radius` of `t`.
     #[inline(always)]
     fn holds(&self, t: f64, radius: f64, rising: bool) -> bool {
         let (below, above) = (self.value(t - radius), self.value(t + radius));

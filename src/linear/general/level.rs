@@ -26,10 +26,10 @@ type Point = [f64; 2];
 
 /// A function over a window.
 pub(super) struct Level<'a> {
-    /// It, at (p, q).
+    /// The function's value at (p, q).
     pub value: &'a dyn Fn(f64, f64) -> f64,
     pub window: &'a Window,
-    /// It depends on p alone.
+    /// Whether the function depends on p alone.
     pub of_p: bool,
 }
 
@@ -92,7 +92,7 @@ impl Level<'_> {
         (self.value)(self.p(u.clamp(0.0, 1.0)), self.q(v.clamp(0.0, 1.0)))
     }
 
-    /// It has the same value on a coarse grid.
+    /// Whether the function has the same value at all points of a coarse grid.
     fn constant(&self) -> bool {
         let first = self.at([0.0, 0.0]);
         let parts = || (0..=32).map(|i| f64::from(i) / 32.0);
@@ -276,7 +276,7 @@ fn inside(at: Point) -> bool {
     at.iter().all(|x| (0.0..=1.0).contains(x))
 }
 
-/// The step from `from` to `to` leads past `origin`, in its direction.
+/// Whether the step from `from` to `to` leads past `origin`, in the direction of `origin`.
 fn passes(from: Place, to: Place, origin: Place) -> bool {
     let step = [to.at[0] - from.at[0], to.at[1] - from.at[1]];
     let there = [origin.at[0] - from.at[0], origin.at[1] - from.at[1]];

@@ -8,9 +8,9 @@
 //! n(τ) = n(0⁺) + 2 Σ_j s_j #{k ≥ 0: τ_{j,k} < τ}                                             (5)
 //! ```
 //!
-//! Equation numbers are those of the derivation for general systems. Degenerate cases are answered
-//! one by one: a root at 0 for every delay, which a real root may pass once; a zero on the axis
-//! that P and Q share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
+//! (6) and (7) are in [`right_of`](super::right_of). Degenerate cases are answered one by one: a
+//! root at 0 for every delay, which a real root may pass once; a zero on the axis that P and Q
+//! share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
 
 use std::f64::consts::{PI, TAU};
 
@@ -27,7 +27,7 @@ use crate::linear::crossing::{Crossing, Direction};
 use crate::linear::equation::Pair;
 use crate::linear::newton::divide;
 
-/// Delays tried for a count by (7) where P + Q leaves n(0⁺) open.
+/// Delays tried for a count by (7) of `right_of` where P + Q leaves n(0⁺) open.
 const TRIES: usize = 40;
 
 /// The crossings of a line of delays.
@@ -41,16 +41,16 @@ pub struct DelayLine {
     pub crossings: Vec<Crossing>,
     /// What is special about the line, if anything.
     pub reason: Option<Reason>,
-    /// At every delay a root lies on the imaginary axis.
+    /// Whether at every delay a root lies on the imaginary axis.
     pub always_marginal: bool,
-    /// Roots lie on the imaginary axis at τ = 0.
+    /// Whether roots lie on the imaginary axis at τ = 0.
     pub marginal_at_zero: bool,
-    /// A real root passes 0 at this delay: one more from there on, or one less.
+    /// The delay at which a real root passes 0: one more is unstable from there on, or one less.
     pub passage: Option<Passage>,
-    /// From this delay on something near the origin may have happened of which rounding does not
-    /// tell.
+    /// The delay from which on something near the origin may have happened of which rounding does
+    /// not tell.
     pub open_from: f64,
-    /// There is no count: infinitely many, or a line that is refused.
+    /// Whether there is no count: infinitely many roots are unstable, or the line is refused.
     pub uncounted: bool,
     /// The unit of time; 1 for dimensionless delays.
     pub time_unit: f64,
@@ -76,7 +76,7 @@ impl DelayLine {
         line
     }
 
-    /// As [`DelayLine::of`], in the memory of this one.
+    /// Finds what [`DelayLine::of`] finds, in the memory of this line.
     pub fn find(&mut self, system: &System) {
         self.clear();
         let without_origin = system.without_common_origin();
@@ -115,7 +115,7 @@ impl DelayLine {
         self.find_crossings(system);
     }
 
-    /// The same with delays in a unit of time of which `time_unit` makes one dimensionless.
+    /// This line with delays in a unit of time of which `time_unit` makes one dimensionless.
     #[must_use]
     pub fn in_physical_time(mut self, time_unit: f64) -> Self {
         for crossing in &mut self.crossings {
@@ -187,8 +187,8 @@ impl DelayLine {
         self.find_start(system, near, origin);
     }
 
-    /// Below the frequency `omega` |P(0)| = |Q(0)| within rounding, without a root at 0: a pair may
-    /// cross at some τ ≥ π/ω or so.
+    /// Notes that a pair may cross at some τ ≥ π/ω or so, with a frequency below `omega`: |P(0)| =
+    /// |Q(0)| within rounding, without a root at 0.
     pub(super) fn opens_below(&mut self, omega: f64) {
         if omega > 0.0 {
             self.open_from = 0.5 * PI / omega;
@@ -226,7 +226,7 @@ impl DelayLine {
         ));
     }
 
-    /// n(0⁺), with what P + Q on the axis or at the origin makes of it.
+    /// Finds n(0⁺), with what zeros of P + Q on the axis or at the origin make of it.
     fn find_start(&mut self, system: &System, near: NearZero, origin: bool) {
         let mut sum = system.without_delay();
         if origin {
@@ -249,7 +249,7 @@ impl DelayLine {
         }
     }
 
-    /// A real root passes 0 at τ* = (p₁ + q₁)/q₀; to the right where F(0⁺) > 0.
+    /// Finds where a real root passes 0: at τ* = (p₁ + q₁)/q₀, to the right where F(0⁺) > 0.
     fn find_passage(&mut self, system: &System, near: NearZero) {
         let slope = crate::linear::rounded::Rounded::sum([
             system.p.coefficient(1).value,
@@ -274,7 +274,7 @@ impl DelayLine {
         }
     }
 
-    /// The zeros of P + Q: how many lie right of the axis, and whether some may lie on it. False
+    /// Counts the zeros of P + Q right of the axis, and notes whether some may lie on it. False
     /// where that is open.
     fn count_right(&mut self, sum: &super::Polynomial) -> bool {
         if !sum.degree_known() {
@@ -302,8 +302,8 @@ impl DelayLine {
         }
     }
 
-    /// Zeros of P + Q at ±iω₀ start on the axis: into n(0⁺) with the crossing that has its phase 2π
-    /// there. False where that cannot be told.
+    /// Adds to n(0⁺) the pairs that start on the axis, from zeros of P + Q at ±iω₀: the crossing
+    /// with its phase 2π there tells to which side they go. False where that cannot be told.
     fn start_on_axis(&mut self, system: &System, sum: &super::Polynomial) -> bool {
         for set in Zeros::of(sum).sets() {
             let (from, to) = set.real_parts();
@@ -355,7 +355,7 @@ impl DelayLine {
         if higher % 2 == 0 { far } else { -far }
     }
 
-    /// n(0⁺) from (7) at some delay, less what happened up to there.
+    /// Finds n(0⁺) from (7) of `right_of` at some delay, less what happened up to there.
     pub(super) fn start_by_count(&mut self, unstable: Option<Turning>) {
         let period = self
             .crossings

@@ -29,7 +29,7 @@ pub(super) struct Decay {
 }
 
 impl Decay {
-    /// On the imaginary axis.
+    /// e^(−στ) on the imaginary axis, which is 1.
     pub(super) const NONE: Self = Self {
         kappa: Rounded {
             value: 1.0,
@@ -41,7 +41,7 @@ impl Decay {
         },
     };
 
-    /// None where κ overflows.
+    /// κ = e^(−στ) for σ = `line`; none where it overflows.
     pub(super) fn new(line: f64, tau: f64) -> Option<Self> {
         if line == 0.0 || tau == 0.0 {
             return Some(Self::NONE);
@@ -81,14 +81,14 @@ pub(super) fn remembered(memory: f64, decay: Decay) -> Rounded {
 /// An angle and a bound on its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Angle {
-    /// In [−π, π].
+    /// The angle, in [−π, π].
     pub value: f64,
     pub error: f64,
 }
 
 impl Angle {
-    /// Of −P Q* = |A|² + R|B|² − R A B* − B A* from the values of B and A: small angles keep their
-    /// digits where A is large.
+    /// The argument of −P Q* = |A|² + R|B|² − R A B* − B A* from the values of B and A: small
+    /// angles keep their digits where A is large.
     pub(super) fn of_feedback(b: At, a: At, memory: f64) -> Option<Self> {
         let both = a.value * b.value.conj();
         let (a_size, b_size) = (a.value.norm_sqr(), b.value.norm_sqr());
@@ -108,7 +108,7 @@ impl Angle {
         Self::of(re, im, re_error, 2.0 * both_error)
     }
 
-    /// Of `re` + i `im`, each with its error; none where the point may be the origin.
+    /// The argument of `re` + i `im`, each with its error; none where the point may be the origin.
     fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
         let size = (re * re + im * im).sqrt();
         if re_error + im_error >= 0.5 * size {
@@ -122,7 +122,7 @@ impl Angle {
         })
     }
 
-    /// Of −P Q* from the values of P and Q.
+    /// The argument of −P Q* from the values of P and Q.
     pub(super) fn of_pair(p: At, q: At) -> Option<Self> {
         let relative = |at: At| at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0);
         let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;

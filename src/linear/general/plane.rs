@@ -20,9 +20,9 @@ const DIFFERENCE: f64 = 1e-6;
 pub struct Setting {
     /// The system, dimensionless.
     pub system: System,
-    /// Its delay, in the unit of time of the plane.
+    /// The delay of the system, in the unit of time of the plane.
     pub tau: f64,
-    /// What one dimensionless unit of time is in that unit.
+    /// One dimensionless unit of time, in the unit of time of the plane.
     pub unit: f64,
 }
 
@@ -36,7 +36,7 @@ impl Setting {
 
 /// A system over the window of a plane.
 pub struct SystemPlane<'a> {
-    /// The setting at (p, q) inside the window; none where there is none.
+    /// The setting at (p, q) inside the window; none where no setting belongs to that point.
     setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
     window: &'a Window,
     delays: [bool; 2],
@@ -44,7 +44,7 @@ pub struct SystemPlane<'a> {
     last: RefCell<Option<Counted>>,
 }
 
-/// What was asked last: many questions are about one point, or one line.
+/// The counter of the last question: many questions are about one point, or one line.
 struct Counted {
     at: (f64, f64),
     setting: Setting,
@@ -52,7 +52,7 @@ struct Counted {
 }
 
 impl<'a> SystemPlane<'a> {
-    /// Of p and q those are delays that `delays` says.
+    /// A plane without lines of delays; `delays` says of p and of q whether it is a delay.
     #[must_use]
     pub fn new(
         setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
@@ -68,7 +68,7 @@ impl<'a> SystemPlane<'a> {
         }
     }
 
-    /// Where q is the delay τ and nothing else depends on it: each p is a line of delays.
+    /// A plane where q is the delay τ and nothing else depends on q: each p is a line of delays.
     #[must_use]
     pub fn of_lines(
         setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
@@ -80,13 +80,13 @@ impl<'a> SystemPlane<'a> {
         }
     }
 
-    /// Each p is a line of delays.
+    /// Whether each p is a line of delays.
     #[must_use]
     pub fn has_lines(&self) -> bool {
         self.lines
     }
 
-    /// The nearest point of the window.
+    /// The point of the window nearest to (p, q).
     fn clamped(&self, p: f64, q: f64) -> (f64, f64) {
         let window = self.window;
         (
@@ -109,7 +109,7 @@ impl<'a> SystemPlane<'a> {
         })
     }
 
-    /// What `of` says of the roots at a point.
+    /// What `of` says of the roots at (p, q).
     fn counted<T>(&self, p: f64, q: f64, of: impl FnOnce(&RootCounter, Setting) -> T) -> Option<T> {
         let (p, inside) = self.clamped(p, q);
         // Along a line only the delay changes.
@@ -245,10 +245,10 @@ impl Plane for SystemPlane<'_> {
         self.counted(p, q, frequencies).unwrap_or_default()
     }
 
-    /// Some root is right of the line for certain where, by (7) with phases that turn by at most
-    /// half a turn for each zero of P and Q, (τ/π) Σ s_jω_j is more than the number of ω_j, half
-    /// the degrees, and one each for ν₀ and rounding. {|P| < κ|Q|}, whose measure the sum is, and
-    /// with it the bound, only grows with τ where P and Q stay as they are.
+    /// Some root is right of the line for certain where, by (7) of `right_of` with phases that turn
+    /// by at most half a turn for each zero of P and Q, (τ/π) Σ s_jω_j is more than the number of
+    /// ω_j, half the degrees, and one each for ν₀ and rounding. The sum is the measure of {|P| <
+    /// κ|Q|}. That set, and with it the bound, only grows with τ where P and Q stay as they are.
     fn band(&self, p: f64, q: f64, sigma: f64) -> Band {
         let band = |counter: &RootCounter, setting: Setting| {
             let all = counter.frequencies(setting.delay(), -sigma * setting.unit);

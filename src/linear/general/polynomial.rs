@@ -24,7 +24,7 @@ pub struct Polynomial {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a polynomial of degree {degree}: at most {MOST_DEGREE} is allowed")]
 pub struct DegreeTooLarge {
-    /// The degree it would have.
+    /// The degree of that product or power.
     pub degree: usize,
 }
 
@@ -33,7 +33,7 @@ pub struct DegreeTooLarge {
 pub struct At {
     /// The value.
     pub value: Complex64,
-    /// A bound on the distance to the exact one.
+    /// A bound on the distance to the exact value.
     pub error: f64,
 }
 
@@ -77,7 +77,7 @@ impl Polynomial {
         all
     }
 
-    /// From coefficients with their errors; the highest one may be 0.
+    /// The polynomial of these coefficients with their errors; the highest coefficient may be 0.
     pub(in crate::linear) fn of(degree: usize, coefficient: impl Fn(usize) -> Rounded) -> Self {
         let mut all = Self::ZERO;
         for k in 0..=degree {
@@ -87,33 +87,33 @@ impl Polynomial {
         all.trimmed(degree)
     }
 
-    /// The degree that it has after exact zeros are left out, at most `degree`.
+    /// This polynomial with the degree that is left without exact zeros, at most `degree`.
     fn trimmed(mut self, degree: usize) -> Self {
         let nonzero = |&k: &usize| self.values[k] != 0.0 || self.errors[k] != 0.0;
         self.degree = (0..=degree).rev().find(nonzero).unwrap_or(0);
         self
     }
 
-    /// Its degree; 0 for constants, 0 itself among them.
+    /// The degree; 0 for constants, 0 itself among them.
     #[inline]
     #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// The highest coefficient is certain to differ from 0, or all of it is exactly 0.
+    /// Whether the highest coefficient is certain to differ from 0, or the polynomial is exactly 0.
     #[must_use]
     pub fn degree_known(&self) -> bool {
         self.is_zero() || self.leading().decided()
     }
 
-    /// It is exactly 0 everywhere.
+    /// Whether the polynomial is exactly 0 everywhere.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         self.degree == 0 && self.values[0] == 0.0 && self.errors[0] == 0.0
     }
 
-    /// No coefficient is certain to differ from 0.
+    /// Whether no coefficient is certain to differ from 0.
     pub(super) fn vanishes(&self) -> bool {
         (0..=self.degree).all(|k| !self.coefficient(k).decided())
     }
@@ -125,7 +125,7 @@ impl Polynomial {
         &self.values[..=self.degree]
     }
 
-    /// Bounds on their errors.
+    /// Bounds on the errors of the coefficients, from the constant on.
     #[inline]
     #[must_use]
     pub fn errors(&self) -> &[f64] {
@@ -172,7 +172,7 @@ impl Polynomial {
         Self::of(self.degree, |k| product(self.coefficient(k), by))
     }
 
-    /// The product of both.
+    /// The product of `self` and `other`.
     ///
     /// # Errors
     /// When its degree would be too large.
@@ -259,13 +259,13 @@ impl Polynomial {
         }
     }
 
-    /// With another constant term.
+    /// This polynomial with another constant term.
     pub(super) fn with_constant(mut self, constant: Rounded) -> Self {
         (self.values[0], self.errors[0]) = (constant.value, constant.error);
         self
     }
 
-    /// Without the highest coefficients that may be 0.
+    /// This polynomial without the highest coefficients that may be 0.
     pub(super) fn without_open_leading(&self) -> Self {
         let degree = (0..=self.degree)
             .rev()
@@ -301,7 +301,8 @@ impl Polynomial {
         [f, first, 2.0 * half_second]
     }
 
-    /// Σ |c_k| `size`^k and Σ e_k `size`^k: bounds on its size and on its error where |s| ≤ `size`.
+    /// Σ |c_k| `size`^k and Σ e_k `size`^k: bounds on the size and the error of the value where |s|
+    /// ≤ `size`.
     #[inline]
     #[must_use]
     pub(super) fn bounds(&self, size: f64) -> (f64, f64) {

@@ -4,7 +4,7 @@
 use super::polynomial::Polynomial;
 use crate::linear::rounded::Rounded;
 
-/// The product with its error; that with an exact 0 or ±1 has none of its own.
+/// The product with its error; a product with an exact 0 or ±1 has no error of its own.
 pub(super) fn product(a: Rounded, b: Rounded) -> Rounded {
     let value = a.value * b.value;
     let exact = a.value.abs() == 1.0 || b.value.abs() == 1.0;
@@ -18,7 +18,7 @@ pub(super) fn product(a: Rounded, b: Rounded) -> Rounded {
     }
 }
 
-/// Σ a b; without rounding where only one of the products is not 0.
+/// Σ a b of all pairs; without rounding where only one of the products is not 0.
 pub(super) fn sum_of_products(terms: impl Iterator<Item = (Rounded, Rounded)>) -> Rounded {
     let (mut sum, mut size, mut error, mut nonzero) = (0.0, 0.0, 0.0, 0.0);
     for (a, b) in terms {

@@ -23,7 +23,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// All of them, in order.
+    /// All reasons, in the order of their numbers.
     pub const ALL: [Self; 7] = [
         Self::RootAtOrigin,
         Self::RootOnAxis,
@@ -34,7 +34,7 @@ impl Reason {
         Self::Refused,
     ];
 
-    /// Its name, the same in JSON and in the flag meanings of a map.
+    /// The name, the same in JSON and in the flag meanings of a map.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -12,8 +12,8 @@
 //! argument of D keeps within a right angle of its argument: no turn is stepped over.
 //!
 //! Only whole turns come from the zeros r of P and Q, arg = Σ arctan[(ω − Im r)/(σ − Re r)]; the
-//! fraction comes from P and Q themselves. Equation numbers are those of the derivation for
-//! general systems.
+//! fraction comes from P and Q themselves. Equations are numbered through the room: (3) to (5) are
+//! in [`line`](super::line), (8) is in [`shifted`](super::shifted).
 
 use std::f64::consts::{PI, TAU};
 
@@ -40,7 +40,7 @@ pub struct RootCounter {
     q: Factors,
 }
 
-/// A polynomial by its zeros.
+/// A polynomial, given by its zeros.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Factors {
     zeros: [Complex64; MOST_DEGREE],
@@ -65,7 +65,7 @@ impl Factors {
         &self.zeros[..self.count]
     }
 
-    /// How many lie right of `line`.
+    /// How many zeros lie right of `line`.
     pub(super) fn right_of(&self, line: f64) -> usize {
         self.zeros().iter().filter(|r| r.re > line).count()
     }
@@ -84,7 +84,7 @@ impl Factors {
         PI * self.half_turns_at_zero(line) as f64 + turned.angle()
     }
 
-    /// Turns by what the argument at σ + iω is beyond that at σ, times `sign` = ±1.
+    /// Turns `turned` by the argument at σ + iω less that at σ, times `sign` = ±1.
     #[inline]
     fn turn(&self, line: f64, omega: f64, sign: f64, turned: &mut Turned) {
         for r in self.zeros() {
@@ -140,7 +140,7 @@ impl Turned {
 }
 
 impl RootCounter {
-    /// For `system`, which is not one of unknown degree.
+    /// A counter for `system`, whose degree is known.
     #[must_use]
     pub fn new(system: &System) -> Self {
         let [p, q] = match system.late() {
@@ -238,7 +238,8 @@ impl RootCounter {
         RightOf::Roots(right)
     }
 
-    /// n_P + ν₀ of (7), and each of its turns to `each`, which says whether the next one matters.
+    /// Returns n_P + ν₀ of (7), and passes each turn of (7) to `each`, which says whether the next
+    /// one matters.
     fn on_line(
         &self,
         tau: f64,

@@ -25,11 +25,13 @@ pub struct Spectrum {
     pub abscissa: f64,
     /// Where roots accumulate: ln ρ/τ, −∞ in retarded equations.
     pub essential_abscissa: f64,
-    /// No root lies right of the abscissa + margin·max(1, |abscissa|); NaN where nothing is known.
+    /// The margin within which the abscissa is known: no root lies right of the abscissa +
+    /// margin·max(1, |abscissa|); NaN where nothing is known.
     pub margin: f64,
-    /// The argument principle confirms that, and the number of unstable roots.
+    /// Whether the argument principle confirms the abscissa within the margin, and the number of
+    /// unstable roots.
     pub certified: bool,
-    /// What is special here.
+    /// What is special about the setting.
     pub reason: Option<Reason>,
     /// What was not found, if anything.
     pub missing: Option<Incomplete>,
@@ -44,7 +46,8 @@ pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
     beside.is_finite().then_some(beside)
 }
 
-/// That line, where no root lies right of it; none where one does, or where that is not known.
+/// The line of [`beside_accumulation`], where no root lies right of it; none where one does, or
+/// where that is not known.
 #[must_use]
 pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f64> {
     let beside = beside_accumulation(counter.system(), tau);

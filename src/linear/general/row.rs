@@ -81,7 +81,7 @@ impl DelayLine {
         row.flagged()
     }
 
-    /// The cells that no crossing tells of.
+    /// Fills the cells that no crossing tells of.
     fn special_cells(
         &self,
         row: &Row<Self>,

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! (8) is (6) in feedback form, on the imaginary axis divided by 1 − R: nothing is subtracted from
-//! itself. Equation numbers are those of the derivation for general systems.
+//! itself. (3) to (5) are in [`line`](super::line), (7) is in [`right_of`](super::right_of).
 
 use super::parts::{Angle, Decay, remembered};
 use super::polynomial::Polynomial;
@@ -26,7 +26,7 @@ pub(super) struct Shifted {
 }
 
 impl Shifted {
-    /// Of P and Q.
+    /// The polynomials of P and Q in λ − σ.
     #[inline]
     pub(super) fn direct([p, q]: [&Polynomial; 2], line: f64, decay: Decay) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl Shifted {
         }
     }
 
-    /// Of B and A with the memory R.
+    /// The polynomials of B and A in λ − σ, with the memory R.
     #[inline]
     pub(super) fn of_feedback(
         [open, gain]: [&Polynomial; 2],
@@ -83,7 +83,7 @@ impl Shifted {
         first.minus(second.times(kappa))
     }
 
-    /// F_σ, a polynomial in x. On the imaginary axis it may be one divided by a positive constant.
+    /// F_σ, a polynomial in x; on the imaginary axis it may be divided by a positive constant.
     pub(super) fn modulus(&self) -> Polynomial {
         let sum = if self.on_axis && self.memory.is_some() {
             self.first.coefficient(0)

@@ -15,7 +15,7 @@ const HALVINGS: u32 = 40;
 
 type Point = (f64, f64);
 
-/// What a count right of the line comes to on the left and on the right of a curve.
+/// Counts of the roots right of the line: on the left and on the right of a curve.
 type Sides = (RightOf, RightOf);
 
 /// The pieces of the curves of `level`, each cut where p turns back and where what holds beside it
@@ -196,7 +196,7 @@ impl Cutter<'_, '_> {
     }
 }
 
-/// What matters of both sides: which are stable.
+/// Which of both sides are stable: all that matters of them.
 fn told((left, right): Sides) -> (bool, bool) {
     (left == RightOf::Roots(0), right == RightOf::Roots(0))
 }

@@ -13,7 +13,7 @@ use crate::linear::stable_delays::{StableInterval, signed_distance};
 pub struct Change {
     /// The delay.
     pub tau: f64,
-    /// By how much the number grows: ±2 for a pair, ±1 for a real root.
+    /// The change of the number of unstable roots: ±2 for a pair, ±1 for a real root.
     pub by: i8,
 }
 
@@ -51,7 +51,7 @@ impl PartialOrd for Next {
 }
 
 impl<'l> Changes<'l> {
-    /// From the delay `tau` on.
+    /// The changes from the delay `tau` on.
     pub(super) fn from(line: &'l DelayLine, tau: f64) -> Self {
         let crossings = line.crossings.iter().enumerate();
         let moving = crossings.filter(|(_, c)| c.direction != Direction::Touch);
@@ -105,7 +105,7 @@ impl Iterator for Changes<'_> {
     }
 }
 
-/// More changes than this are not gone through: near a touch there can be any number of them.
+/// The most changes that are gone through: near a touch there can be any number of them.
 const MOST_CHANGES: u64 = 1 << 20;
 
 /// The stable intervals of a line by growing delay.
@@ -116,7 +116,7 @@ pub struct StableIntervals<'l> {
     left: u64,
     n: i64,
     from: f64,
-    /// From it on nothing is stable, or wanted.
+    /// The delay from which on nothing is stable, or wanted.
     last: f64,
 }
 
@@ -146,7 +146,7 @@ impl Iterator for StableIntervals<'_> {
 }
 
 impl StableIntervals<'_> {
-    /// There were too many changes to go through: further intervals may have been left out.
+    /// Whether there were too many changes to go through: further intervals may have been left out.
     #[must_use]
     pub fn gave_up(&self) -> bool {
         self.left == 0

@@ -1,6 +1,6 @@
 //! Where |P| and κ|Q| change places on a vertical line: the positive zeros of F_σ.
 //!
-//! Each is given with what is not known of it. Zeros that rounding does not tell apart come as one,
+//! Each zero comes with a bound on its error. Zeros that rounding does not tell apart come as one,
 //! which counts by the change of sign of F across all of them.
 
 use super::isolate::{Enclosed, PositiveZeros};
@@ -11,24 +11,24 @@ use crate::model::elementary::pow;
 /// A positive zero of F, or several that cannot be told apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Switch {
-    /// Its frequency ω = √x.
+    /// The frequency ω = √x of the zero.
     pub omega: f64,
     /// A bound on the error of ω.
     pub error: f64,
     /// Half the change of the sign of F with growing x.
     pub sign: i8,
-    /// It is one zero and simple.
+    /// Whether this is one zero, and simple.
     pub simple: bool,
 }
 
 /// The positive zeros of F by falling frequency.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Switches {
-    /// Them.
+    /// The zeros.
     pub list: Vec<Switch>,
     /// The sign of F right of 0; none where zeros near 0 leave it open.
     pub at_zero: Option<bool>,
-    /// Below this frequency there may be further zeros.
+    /// The frequency below which there may be further zeros.
     pub open_below: f64,
 }
 
@@ -37,12 +37,13 @@ pub(super) struct Switches {
 pub(super) struct NearZero {
     /// The sign of F right of 0; none where zeros near 0 leave it open.
     pub sign: Option<bool>,
-    /// Below this frequency there may be further zeros.
+    /// The frequency below which there may be further zeros.
     pub open_below: f64,
 }
 
 impl Switches {
-    /// Of the polynomial `f` in x = ω². F(0) is taken for 0 exactly where it may be 0.
+    /// Finds the positive zeros of the polynomial `f` in x = ω². F(0) is taken for 0 exactly where
+    /// it may be 0.
     ///
     /// Returns false, and leaves nothing known, where the highest coefficient may be 0.
     pub(super) fn find(&mut self, f: &Polynomial) -> bool {
@@ -98,7 +99,7 @@ fn switches_of(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) 
     }
 }
 
-/// From all zeros of `f`, those that are not apart as one.
+/// Visits the switches from all zeros of `f`: zeros that are not apart count as one.
 #[cold]
 fn by_discs(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
     let zeros = Zeros::of(f);

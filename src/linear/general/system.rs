@@ -22,7 +22,7 @@ pub struct System {
     class: Class,
 }
 
-/// What kind of equation it is.
+/// The kind of equation that D = 0 is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Class {
     /// deg Q < deg P: finitely many roots right of any line.
@@ -57,15 +57,15 @@ impl Class {
 }
 
 impl System {
-    /// From P and Q themselves.
+    /// The system of these P and Q.
     #[must_use]
     pub fn direct(p: Polynomial, q: Polynomial) -> Self {
         Self::classified(p, q, None)
     }
 
-    /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the
-    /// latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored:
-    /// there is nothing to remember and nothing that could be late.
+    /// The system of the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and
+    /// the latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere memory and
+    /// latency are ignored: there is nothing to remember and nothing that could be late.
     #[must_use]
     pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
         if gain.is_zero() {
@@ -86,7 +86,7 @@ impl System {
         Self::classified(p, q, Some(feedback))
     }
 
-    /// From the coefficients of P and Q, the constants first.
+    /// The system of the coefficients of P and Q, the constants first.
     ///
     /// # Errors
     /// When there are too many.
@@ -152,13 +152,13 @@ impl System {
         [&self.p, &self.q].map(|of| of.coefficients().get(degree).copied().unwrap_or(0.0))
     }
 
-    /// Its class.
+    /// The class of the system.
     #[must_use]
     pub fn class(&self) -> Class {
         self.class
     }
 
-    /// No feedback at all: the delay does not matter.
+    /// Whether there is no feedback at all: then the delay does not matter.
     #[must_use]
     pub fn uncontrolled(&self) -> bool {
         self.q.is_zero()
@@ -203,7 +203,7 @@ impl System {
         }
     }
 
-    /// The frequencies |Im λ| > 0 of its roots without delay, in no order.
+    /// The frequencies |Im λ| > 0 of the roots without delay, in no order.
     #[must_use]
     pub fn frequencies_without_delay(&self) -> Vec<f64> {
         let zeros = Zeros::of(&self.without_delay().without_open_leading());
@@ -311,7 +311,7 @@ impl System {
         }
     }
 
-    /// P and Q have a zero near iω in common, both within their errors on the axis.
+    /// Whether P and Q have a zero near iω in common, both within their errors on the axis.
     pub(super) fn has_common_zero(&self, omega: f64) -> bool {
         let on_axis = |polynomial: &Polynomial| {
             let zeros = Zeros::of(polynomial);

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 /// The number of roots right of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RightOf {
-    /// So many.
+    /// So many roots.
     Roots(u64),
     /// Infinitely many: the line lies left of the one at which they accumulate.
     Infinite,
@@ -24,7 +24,7 @@ impl RightOf {
     }
 }
 
-/// A frequency at which one of (7)'s turns is counted.
+/// A frequency at which a turn of (7) is counted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
     pub omega: f64,
@@ -59,8 +59,8 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// The number of roots right of the line at the delay `tau`, the one it was made for; any where
-    /// the line is the imaginary axis. None where a root is too near to the line.
+    /// The number of roots right of the line at the delay `tau`: the one that this was made for, or
+    /// any where the line is the imaginary axis. None where a root is too near to the line.
     #[must_use]
     pub fn at(&self, tau: f64) -> Option<u64> {
         let mut turned = WholeTurns::at(tau);
@@ -92,7 +92,7 @@ impl WholeTurns {
         true
     }
 
-    /// The number of roots, `without_turns` being what stands before the sum in (7).
+    /// The number of roots by (7); `without_turns` is n_P + ν₀, which stands before the sum.
     #[inline]
     fn roots(self, without_turns: i64) -> Option<u64> {
         u64::try_from(without_turns + 2 * self.sum as i64).ok()

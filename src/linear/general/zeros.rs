@@ -28,9 +28,9 @@ const NEARLY_REAL: f64 = 1e-14;
 /// A disc of the complex plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Its centre, an approximate zero.
+    /// The centre, an approximate zero.
     pub centre: Complex64,
-    /// Its radius; infinite where nothing is known.
+    /// The radius; infinite where nothing is known.
     pub radius: f64,
 }
 
@@ -121,7 +121,7 @@ pub struct Set<'z> {
 }
 
 impl Set<'_> {
-    /// Its discs.
+    /// The discs of the set.
     pub fn discs(&self) -> impl Iterator<Item = Disc> + '_ {
         let number = self.number;
         self.zeros
@@ -132,14 +132,14 @@ impl Set<'_> {
             .map(|(disc, _)| *disc)
     }
 
-    /// How many zeros it holds.
+    /// How many zeros the set holds.
     #[must_use]
     pub fn count(&self) -> usize {
         self.discs().count()
     }
 
-    /// The part of the real axis that it covers, or none where it covers none; between two discs
-    /// of it that part is taken for covered as well.
+    /// The part of the real axis that the set covers, the stretch between two of its discs
+    /// included; none where it covers none.
     #[must_use]
     pub fn on_real_axis(&self) -> Option<(f64, f64)> {
         let mut covered: Option<(f64, f64)> = None;
@@ -160,7 +160,7 @@ impl Set<'_> {
         covered
     }
 
-    /// The interval of real parts that it covers.
+    /// The interval of real parts that the set covers.
     #[must_use]
     pub fn real_parts(&self) -> (f64, f64) {
         let ends = |disc: Disc| (disc.centre.re - disc.radius, disc.centre.re + disc.radius);
@@ -170,7 +170,7 @@ impl Set<'_> {
         )
     }
 
-    /// The middle of its centres.
+    /// The middle of the centres of the discs.
     #[must_use]
     pub fn middle(&self) -> Complex64 {
         let sum: Complex64 = self.discs().map(|d| d.centre).sum();
@@ -233,7 +233,7 @@ fn rounding(of: &Polynomial) -> f64 {
     (4.0 * of.degree() as f64 + 4.0) * f64::EPSILON
 }
 
-/// (1) for the disc number `i`.
+/// The radius of the disc number `i` by (1).
 fn radius(of: &Polynomial, at: &[Complex64], i: usize) -> f64 {
     let z = at[i];
     let f = evaluate(of, z);

@@ -16,8 +16,8 @@ use crate::model::friction::Kind;
 const LARGEST_EXPONENT: f64 = 300.0;
 /// How many times as large a sliding velocity is looked at.
 pub const MOST_VELOCITIES: f64 = 1024.0;
-/// Up to this part of the delay at which infinitely many roots come to the line others are looked
-/// for: nearer to it there may be any number of them.
+/// Limits are looked for up to this part of the delay at which infinitely many roots come to the
+/// line: nearer to that delay there may be any number of them.
 const BEFORE_ACCUMULATION: f64 = 1.0 - 1e-3;
 
 /// The delays at which stability is lost, 0 below where none is.
@@ -109,7 +109,7 @@ fn longest_searched(setting: &Setting) -> f64 {
     longest_latency(setting.decay).max(2.0 * setting.tau)
 }
 
-/// The longest latency that is looked at there.
+/// The longest latency that is looked at where a decay rate `decay` is required.
 pub(super) fn longest_latency(decay: f64) -> f64 {
     LARGEST_EXPONENT / decay
 }
@@ -122,8 +122,8 @@ fn found_or(nearest: Nearest, none: f64) -> f64 {
     }
 }
 
-/// The nearest value above `from`, looked for in steps that grow; infinite where there is none up
-/// to `last`.
+/// The nearest value above `from` at which a root is on the line, looked for in steps that grow;
+/// infinite where there is none up to `last`.
 fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
     let (mut start, mut step, mut left) = (from, step, MOST_BOXES);
     while start < last {

@@ -26,11 +26,11 @@ use crate::model::elementary::norm;
 /// The delays (2) that are nearest to the one of a setting.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near<const V: usize> {
-    /// No such delay is nearer than this.
+    /// The distance from the setting's delay within which no such delay lies.
     pub distance: f64,
-    /// One of them, in the middle of the box.
+    /// One such delay, in the middle of the box.
     pub tau: f64,
-    /// How much each variable moves them.
+    /// How much each variable moves these delays.
     pub weights: [f64; V],
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Near<const V: usize> {
 pub(super) enum Delays<const V: usize> {
     /// The box is too wide for (2).
     Unknown,
-    /// At these a root may be on the line.
+    /// The delays at which a root may be on the line.
     Near(Near<V>),
 }
 

@@ -52,7 +52,7 @@ pub(super) struct Parts<const V: usize> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Enclosed<const V: usize> {
     pub value: Affine<V>,
-    /// How much each variable does to it: the one to halve.
+    /// How much each variable changes D: the box is halved along the one that changes it most.
     pub weights: [f64; V],
 }
 
@@ -161,7 +161,7 @@ pub(super) fn root_bound(b: f64, a_v: f64, a_n: f64, control: f64) -> f64 {
 /// The slope μ_K′ of a law as a variable of its own.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slope {
-    /// Its number.
+    /// The number of that variable.
     pub variable: usize,
     /// Only slopes between these are asked for.
     pub between: (f64, f64),
@@ -174,7 +174,7 @@ pub struct SlidingLaw<'a> {
     pub law: &'a FrictionLaw,
     /// The block.
     pub oscillator: &'a Oscillator,
-    /// Its gains.
+    /// The gains of the control.
     pub control: Control,
 }
 

@@ -38,10 +38,10 @@ pub(super) trait OnLine {
     /// The factor k of the gains that a zero of [`OnLine::gain`] belongs to.
     fn gain_factor(&self, omega: f64) -> f64;
 
-    /// No root with gains of up to `factor` times as much lies on the line beyond this ω.
+    /// The ω beyond which no root with gains of up to `factor` times as much lies on the line.
     fn gain_bound(&self, factor: f64) -> f64;
 
-    /// No crossing at any factor of the gains has a frequency beyond this.
+    /// The ω beyond which no crossing lies at any factor of the gains.
     fn highest_with_gain(&self) -> f64;
 
     /// The left side of (2).
@@ -50,7 +50,7 @@ pub(super) trait OnLine {
     /// The slope b that a zero of [`OnLine::slope`] belongs to.
     fn slope_at(&self, omega: f64) -> f64;
 
-    /// No root of any slope b lies on the line beyond this ω.
+    /// The ω beyond which no root of any slope b lies on the line.
     fn slope_bound(&self) -> f64;
 
     /// The left side minus the right side of (3).
@@ -59,7 +59,7 @@ pub(super) trait OnLine {
     /// −L.
     fn negative_loop(&self, omega: f64) -> Complex64;
 
-    /// No zero of (3) lies beyond this ω.
+    /// The ω beyond which no zero of (3) lies.
     fn unit_loop_bound(&self) -> f64;
 }
 
@@ -88,7 +88,7 @@ impl Complex {
         }
     }
 
-    /// For real ω.
+    /// The conjugate for real ω.
     fn conjugate(self) -> Self {
         Self {
             im: Polynomial::default().plus(self.im, -1.0),

@@ -10,18 +10,18 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Where that is not known.
+    /// Limits that are not known.
     pub const UNDECIDED: Self = Self {
         lower: f64::NAN,
         upper: f64::NAN,
     };
 }
 
-/// Margins of the loop: (1) of the room.
+/// Margins of the loop, (1) of `margins`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopMargins {
-    /// In radians; infinite where |L| is 1 nowhere.
+    /// The phase margin in radians; infinite where |L| is 1 nowhere.
     pub phase: f64,
-    /// In units of √(M/κ); infinite where no latency matters.
+    /// The latency margin in units of √(M/κ); infinite where no latency matters.
     pub latency: f64,
 }

@@ -21,7 +21,7 @@
 //! zeros are found, none is stepped over. The exact count decides whether stability changes there:
 //! where a pair only touches the axis, the search goes on.
 //!
-//! What holds for several parameters at once tells the [`Radius`].
+//! The [`Radius`] tells what holds for several parameters at once.
 //!
 //! - `affine`: complex affine arithmetic
 //! - `along`: limits along the delay, the latency and the sliding velocity
@@ -86,19 +86,19 @@ pub struct Margins {
 /// How many times as large gains are looked at, where no bound on them is known.
 const MOST_GAINS: f64 = 1e12;
 
-/// Up to where limits are looked for that are told as infinite; infinite where none lies beyond.
+/// How far limits are looked for before they are told as infinite; infinite where none lies beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Of the factor of both gains.
+    /// The largest factor of both gains.
     pub gain: f64,
-    /// Of the delay.
+    /// The longest delay.
     pub delay: f64,
-    /// Of a further latency.
+    /// The longest further latency.
     pub latency: f64,
 }
 
 impl Case {
-    /// Up to where upper limits are looked for.
+    /// How far upper limits are looked for.
     #[must_use]
     pub fn reach(&self) -> Reach {
         let (endless, setting) = (f64::INFINITY, &self.setting);
@@ -264,7 +264,7 @@ impl Margins {
     }
 
     /// The latency margin alone. Beyond the letter it counts from no latency, with all else as it
-    /// is, and is 0 where that is not stable.
+    /// is; it is 0 where the setting is not stable without latency.
     pub fn latency(&mut self, of: &impl AsCase) -> f64 {
         let case = of.case();
         match &case.beyond {

@@ -19,10 +19,10 @@ const SAME: f64 = 1e-12;
 
 /// D over boxes of ω and one parameter.
 pub(super) trait Family {
-    /// D where ω and the parameter are within these.
+    /// D where ω and the parameter are within these intervals.
     fn enclosed(&self, omega: (f64, f64), parameter: (f64, f64)) -> Enclosed<2>;
 
-    /// No root is on the line beyond this ω while the parameter is within `parameter`.
+    /// The ω beyond which no root is on the line while the parameter is within `parameter`.
     fn bound(&self, parameter: (f64, f64)) -> f64;
 }
 
@@ -33,7 +33,7 @@ pub(super) enum Nearest {
     At(f64),
     /// No root comes to the line.
     None,
-    /// That took too long.
+    /// The search took too long.
     Undecided,
 }
 

@@ -1,7 +1,7 @@
 //! Of the values of a parameter at which a root lies on the line Re λ = −σ, the nearest at which
 //! stability is lost.
 
-/// A limit is known to this part of it, or not known.
+/// A limit is known to this relative precision, or not known.
 const SURE: f64 = 1e-9;
 
 /// One side of a setting.

@@ -8,9 +8,9 @@ use super::surroundings::{ALL, ANY_SLOPE, Changes, Surroundings, changes, larges
 use crate::linear::Crossings;
 use crate::model::elementary::power;
 
-/// Steps of Newton's method: at a touch each halves the distance.
+/// The most steps of Newton's method: at a touch each halves the distance.
 const MOST_STEPS: u32 = 48;
-/// So many of these may lead away from a zero.
+/// The most steps of Newton's method that may lead away from a zero.
 const MOST_ASTRAY: u32 = 3;
 /// Steps along a direction when settings that are not stable are looked for.
 const STEPS: u32 = 48;
@@ -19,7 +19,7 @@ const STEPS_BEYOND: u32 = 12;
 
 /// Finding the crossings of a setting takes as long as enclosing D so many times.
 const WORK_OF_CROSSINGS: u32 = 4;
-/// Beyond the letter it takes as long as enclosing D this many times.
+/// Finding the crossings of a setting beyond the letter takes as long as enclosing D so many times.
 const WORK_OF_CROSSINGS_BEYOND: u32 = 16;
 
 impl Surroundings<'_> {
@@ -53,7 +53,7 @@ impl Surroundings<'_> {
         Some(if self.stable(beyond) { on_line } else { beyond })
     }
 
-    /// These changes of gain and third parameter with the least change of the delay at which
+    /// The given changes of gain and third parameter, with the least change of the delay at which
     /// sliding is not stable.
     fn delay_lost(&self, [gain, _, third]: Changes) -> Option<Changes> {
         let (groups, tau) = self.changed([gain, 0.0, third]);
@@ -129,7 +129,7 @@ impl Surroundings<'_> {
         None
     }
 
-    /// Of the settings in some directions, the nearest found that is not stable, up to `limit`.
+    /// The nearest setting found in some directions that is not stable, up to `limit`.
     pub(super) fn nearest_along_directions(&self, fixed: [bool; 3], limit: f64) -> Option<Changes> {
         let mut nearest: Option<Changes> = None;
         for number in 0..27 {

@@ -20,7 +20,7 @@ use super::setting::Setting;
 use super::surroundings::{ALL, Changes, DELAY, JUMP, Sides, Surroundings, largest};
 use crate::model::elementary::exp;
 
-/// Times that D is enclosed before the best proof so far has to do: a part of a second, and the
+/// How many times D is enclosed before the best proof so far has to do: a part of a second, and the
 /// same proof on every machine.
 const MOST_WORK: u32 = 1 << 19;
 /// The proved radius is at least this part of the distance of a setting that is not stable.
@@ -51,7 +51,7 @@ struct Part {
     /// The least max |δ_i| at which D may vanish.
     distance: f64,
     sides: Sides,
-    /// The variable along which it is to be halved.
+    /// The variable along which the box is to be halved.
     variable: usize,
     /// ω and changes at which D may be near 0.
     candidate: Option<[f64; 4]>,

@@ -12,7 +12,7 @@ pub struct Setting {
     pub groups: Groups,
     /// τ ≥ 0, in units of √(M/κ).
     pub tau: f64,
-    /// σ ≥ 0, the required decay rate, in their inverse.
+    /// σ ≥ 0, the required decay rate, in units of √(κ/M).
     pub decay: f64,
 }
 
@@ -51,7 +51,7 @@ impl Setting {
         self.case().stable()
     }
 
-    /// No control acts, whatever its gains and its phase are.
+    /// Whether no control acts, whatever its gains and its phase are.
     pub(super) fn idle(&self) -> bool {
         self.groups.uncontrolled() || self.tau == 0.0
     }
@@ -71,7 +71,7 @@ impl Case {
         }
     }
 
-    /// Whether it is one beyond the letter.
+    /// Whether the feedback has anything beyond the letter's own.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
         self.beyond.is_some()

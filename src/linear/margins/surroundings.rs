@@ -28,14 +28,14 @@ pub(super) struct Surroundings<'a> {
 pub(super) const DELAY: usize = 2;
 /// Number of the slope of a law, which is a variable of its own where it jumps within a box.
 pub(super) const JUMP: usize = 4;
-/// So many variables there are.
+/// The number of variables: ω, gain, delay, third parameter and slope.
 pub(super) const ALL: usize = 5;
 /// A box of ω, δ₁, δ₂, δ₃ and μ_K′.
 pub(super) type Sides = [(f64, f64); ALL];
 /// Any μ_K′.
 pub(super) const ANY_SLOPE: (f64, f64) = (-1e300, 1e300);
 
-/// Without ω.
+/// The changes without ω.
 pub(super) fn changes([_, gain, delay, third]: [f64; 4]) -> Changes {
     [gain, delay, third]
 }
@@ -118,7 +118,7 @@ impl Surroundings<'_> {
         (low.max(ANY_SLOPE.0), high.min(ANY_SLOPE.1))
     }
 
-    /// No root is on the line beyond this ω while all changes are at most `most`.
+    /// The ω beyond which no root is on the line while all changes are at most `most`.
     pub(super) fn highest(&self, most: f64) -> f64 {
         let Setting { groups, tau, decay } = self.case.setting;
         let (b, a_n) = match self.third {

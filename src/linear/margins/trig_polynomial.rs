@@ -82,7 +82,7 @@ pub(super) struct TrigPolynomial {
 }
 
 impl TrigPolynomial {
-    /// With its derivatives.
+    /// The function with its derivatives.
     pub(super) fn jet(self) -> Jet {
         let first = self.derivative();
         let second = first.derivative();
@@ -90,7 +90,7 @@ impl TrigPolynomial {
         Jet { f, first, second }
     }
 
-    /// (2).
+    /// The derivative (2).
     fn derivative(&self) -> Self {
         let Self {
             free,

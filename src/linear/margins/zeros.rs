@@ -30,7 +30,7 @@ pub(super) trait Wave {
     /// K ≥ |f″| up to `omega`.
     fn bend(&self, omega: f64) -> f64;
 
-    /// Below this ω zeros are told apart no better than there.
+    /// The ω below which zeros are told apart no better than at it.
     fn finest(&self) -> f64 {
         f64::MIN_POSITIVE
     }

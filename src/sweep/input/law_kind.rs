@@ -55,7 +55,7 @@ catalogue! {
         /// [`RateAndState`], which is not a function of the velocity alone.
         RateAndState = Row {
             name: "rate-and-state",
-            formula: "μ = μ0 + A_f ln(v/v*) + B_f ln(v*θ/D_c)",
+            formula: "μ = μ0 + A_f ln(v/v*) + B_f ln(v* θ/D_c)",
             parameters: &[
                 Parameter::Mu0,
                 Parameter::VStar,

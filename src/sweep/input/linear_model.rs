@@ -8,9 +8,9 @@
 //! ```
 //!
 //! The load follows its command with the lag T_a, the pulling velocity with T_v, and the sensor
-//! follows the elongation with T_s. Each lag divides the signal by 1 + Tλ. (1) and (2) are equation
-//! (2) and the first row of section 7 of the derivation for general systems. (3) is the letter's
-//! friction; (4) is friction with a state, the second row there. Times are in units of √(M/κ).
+//! follows the elongation with T_s. Each lag divides the signal by 1 + Tλ. (3) is the letter's
+//! friction, with b, a_v and a_n of [`crate::model::Groups`]. (4) is friction with a state, with α,
+//! β, T and c of [`crate::model::StateGroups`]. Times are in units of √(M/κ).
 
 use num_complex::Complex64;
 
@@ -95,7 +95,7 @@ fn times(one: &Polynomial, other: &Polynomial) -> Polynomial {
 }
 
 impl Friction {
-    /// Friction with a state: the second row of section 7.
+    /// Friction with a state, (4).
     fn of_state(groups: StateGroups) -> Self {
         let StateGroups {
             direct,
@@ -124,7 +124,7 @@ impl Friction {
         }
     }
 
-    /// The letter's friction.
+    /// The letter's friction, (3).
     fn of_slope(b: f64) -> Self {
         Self {
             open: [polynomial(&[1.0, b, 1.0]), polynomial(&[0.0, 1.0])],

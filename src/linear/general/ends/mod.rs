@@ -36,7 +36,7 @@ const LATENCY_STEP: f64 = 0.02;
 /// A latency longer than this is not looked at for the best one.
 const LONGEST_LATENCY: f64 = 20.0;
 const MOST_ITERATIONS: u32 = 60;
-/// A step of Newton's method changes nothing by more than this.
+/// A step of Newton's method changes no unknown by more than this.
 const LONGEST: f64 = 0.1;
 /// How far right of the axis another root is one that is unstable: a double root is blurred.
 const BESIDE: f64 = 1e-3;
@@ -57,7 +57,7 @@ pub enum Latency {
 pub enum Touch {
     /// A double pair lies on the axis.
     DoublePair,
-    /// Two pairs lie on it, whose curves touch.
+    /// Two pairs lie on the axis, and their curves touch.
     TwoPairs,
 }
 
@@ -252,7 +252,7 @@ impl Problem {
         [value, by_lambda]
     }
 
-    /// C of (2).
+    /// C(y) of (2), the conditions on the end.
     fn conditions(&self, y: &[f64]) -> Values {
         let frequencies = if self.latency.is_none() { 4 } else { 3 };
         let mut values = Values::NONE;
@@ -267,7 +267,7 @@ impl Problem {
         values
     }
 
-    /// (2): C, and what is left of the gradient of b.
+    /// What has to vanish in (2): C(y), and what is left of the gradient of b.
     fn equations(&self, z: &[f64], unknowns: usize) -> Values {
         let (y, multipliers) = z.split_at(unknowns);
         let mut values = self.conditions(y);
@@ -334,7 +334,8 @@ impl Problem {
         solve(&columns[..count], right.all()).map(|x| x[..count].to_vec())
     }
 
-    /// Of two pairs none can move left without the other moving right; only then is b the end.
+    /// Whether neither of two pairs can move left without the other moving right; only then is b
+    /// the end.
     fn opposed(&self, z: &Values, unknowns: usize) -> bool {
         if self.touch == Touch::DoublePair {
             return true;
@@ -349,7 +350,7 @@ impl Problem {
         weights.iter().all(|weight| *weight > 0.0)
     }
 
-    /// No further root is unstable.
+    /// Whether no further root is unstable at `end`.
     fn alone(&self, end: &LobeEnd) -> bool {
         let shape = match self.control {
             LobeControl::Velocity => [end.gain * end.b, end.gain],

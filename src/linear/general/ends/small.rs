@@ -2,7 +2,7 @@
 
 /// Steps of difference quotients, over max(1, |y|).
 const DIFFERENCE: f64 = 1e-5;
-/// Unknowns at most: b, g, τ, δ, two frequencies and four multipliers.
+/// The most unknowns: b, g, τ, δ, two frequencies and four multipliers.
 pub(super) const MOST: usize = 10;
 
 /// Values of all unknowns, or of equations; as many as count.

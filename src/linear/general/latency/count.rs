@@ -18,10 +18,10 @@ use super::wave::TooMany;
 use super::window::Window;
 use crate::model::elementary::{arg, atan2, sincos};
 
-/// Below this part of a turn a root near the real axis cannot have made one.
+/// The part of a turn below which a root near the real axis cannot have made a whole one.
 const NO_TURN: f64 = 0.25;
 
-/// Frequencies to so many digits, relative, decide nearly every turn.
+/// The relative precision of frequencies that decides nearly every turn.
 const ROUGH: f64 = 1e-3;
 /// Turns of the delay over the range of frequencies, less those of the latency, up to which the
 /// form with the latency costs less: it needs no arguments of sums.
@@ -94,7 +94,7 @@ impl<'f> Way<'f> {
         })
     }
 
-    /// φ and ψ.
+    /// φ and ψ of (7) at `omega`, continuous in ω.
     fn rough(&self, omega: f64) -> [f64; 2] {
         let [open, gain] = self.arguments.at(omega);
         let of = self.on_line;
@@ -152,7 +152,7 @@ impl<'f> Way<'f> {
         })
     }
 
-    /// Tells `each` the turns of the line; what stands before them in (7).
+    /// Passes every turn of the line to `each`; returns n_P + ν₀ of (7).
     fn turns(
         &self,
         (window, precision): (Window, f64),
@@ -196,9 +196,9 @@ impl RootCounter {
         }
     }
 
-    /// As [`RootCounter::right_of`], with latency: by the form that costs less, its frequencies to
-    /// no more digits than it takes; where that leaves it open by the same with all digits, and by
-    /// the other form.
+    /// The number of roots that [`RootCounter::right_of`] tells, with latency. The form that costs
+    /// less is tried first, with frequencies to no more digits than a turn takes. Where that leaves
+    /// the number open, all digits are used, and then the other form.
     pub(in super::super) fn late(&self, feedback: &Feedback, tau: f64, line: f64) -> RightOf {
         let on_line = match self.late_line(feedback, tau, line) {
             Ok(on_line) => on_line,

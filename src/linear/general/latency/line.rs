@@ -16,8 +16,8 @@ use super::on_line::{Form, OnLine};
 use crate::linear::count::MarginalTolerance;
 
 impl DelayLine {
-    /// The line of latencies of `system` at the delay `tau` ≥ 0: what is called delay there is the
-    /// latency, counted from 0 whatever latency `system` has itself. None where it is not in
+    /// The line of latencies of `system` at the delay `tau` ≥ 0: what the line calls delay is the
+    /// latency, counted from 0 whatever latency `system` has itself. None where `system` is not in
     /// feedback form.
     #[must_use]
     pub fn of_latencies(system: &System, tau: f64) -> Option<Self> {
@@ -25,7 +25,8 @@ impl DelayLine {
         line.find_latencies(system, tau).then_some(line)
     }
 
-    /// As [`DelayLine::of_latencies`], in the memory of this one; false where there is none.
+    /// Finds what [`DelayLine::of_latencies`] finds, in the memory of this line; false where there
+    /// is none.
     pub fn find_latencies(&mut self, system: &System, tau: f64) -> bool {
         let (Some(at_once), Some(late)) = (system.with_latency(0.0), system.with_latency(1.0))
         else {
@@ -84,8 +85,9 @@ impl DelayLine {
         }
     }
 
-    /// Of a line of latencies: the first change of the number of unstable roots along it, if it
-    /// begins stable; 0 where it does not, ∞ where nothing changes, NaN where that is open.
+    /// The first latency at which the number of unstable roots changes along a line of latencies
+    /// that begins stable; 0 where it begins unstable, ∞ where nothing changes, NaN where that is
+    /// open.
     #[must_use]
     pub fn latency_margin(&self) -> f64 {
         if self.uncounted {
@@ -111,9 +113,9 @@ impl DelayLine {
 
 impl System {
     /// The latency margin at the delay `tau` ≥ 0: the smallest latency, counted from 0 with
-    /// everything else fixed, at which stability is lost. ∞ where there is none, 0 where it is
-    /// unstable or marginal without latency, NaN where that is open; none where the system is not
-    /// in feedback form.
+    /// everything else fixed, at which stability is lost. ∞ where there is none, 0 where the system
+    /// is unstable or marginal without latency, NaN where that is open; none where the system is
+    /// not in feedback form.
     #[must_use]
     pub fn latency_margin(&self, tau: f64) -> Option<f64> {
         DelayLine::of_latencies(self, tau).map(|line| line.latency_margin())

@@ -1,8 +1,8 @@
 //! Feedback that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
 //!
-//! On the imaginary axis either of them is a line while the other one is fixed, with crossings by
-//! the same (4) and (5) as without latency; only that |P|² − |Q|² swings with the delay that is
-//! fixed, and its zeros are found along ω.
+//! On the imaginary axis either delay is a line while the other one is fixed. Crossings follow from
+//! (4) and (5) of [`general::line`](super::line) as without latency, but |P|² − |Q|² swings with
+//! the delay that is fixed, and its zeros are found along ω.
 //!
 //! - [`wave`]: functions that swing with one delay, and all their zeros
 //! - [`prepared`]: such a function and its slope at one frequency, with bounds; steps and zeros
@@ -51,7 +51,7 @@ impl System {
         apart.then(|| on_line.window().to)
     }
 
-    /// The same system with the latency `latency` ≥ 0; none where it is not in feedback form.
+    /// This system with the latency `latency` ≥ 0; none where it is not in feedback form.
     #[must_use]
     pub fn with_latency(&self, latency: f64) -> Option<Self> {
         if self.uncontrolled() {
@@ -65,7 +65,7 @@ impl System {
 }
 
 impl Feedback {
-    /// P and Q have degrees only without latency; here B alone decides, and R.
+    /// The class with latency, by B and R alone: only without latency do P and Q have degrees.
     pub(super) fn late_class(&self) -> Class {
         if !self.open.degree_known() {
             return Class::DegreeUnknown;
@@ -81,7 +81,7 @@ impl Feedback {
         }
     }
 
-    /// With B and A divided by λ.
+    /// This feedback with B and A divided by λ.
     pub(super) fn divided_by_variable(&self) -> Self {
         Self {
             open: self.open.divided_by_variable(),
@@ -90,12 +90,14 @@ impl Feedback {
         }
     }
 
-    /// Where (3) of [`on_line`] changes its sign on the imaginary axis; false where that is open.
+    /// Finds where (3) of [`on_line`] changes its sign on the imaginary axis; false where that is
+    /// open.
     pub(super) fn late_switches(&self, switches: &mut Switches) -> bool {
         self.switches_on(0.0, 0.0, switches)
     }
 
-    /// As [`Feedback::late_switches`], on any line at the delay `tau`.
+    /// Finds where (3) of [`on_line`] changes its sign on any line at the delay `tau`; false where
+    /// that is open.
     pub(super) fn switches_on(&self, tau: f64, line: f64, switches: &mut Switches) -> bool {
         let Some(on_line) = OnLine::new(self, tau, line) else {
             return false;
@@ -109,7 +111,7 @@ impl Feedback {
         OnLine::new(self, 0.0, 0.0)?.phase(Form::Delay, omega, error)
     }
 
-    /// B and A have no more than a constant between them: nothing else depends on λ.
+    /// B and A; the rest of D depends on λ by exponentials alone.
     pub(super) fn polynomials(&self) -> [&Polynomial; 2] {
         [&self.open, &self.gain]
     }

@@ -32,9 +32,9 @@ use crate::model::elementary::sincos;
 /// Which of the two delays turns the feedback term in the argument principle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// (1) of the module: the delay τ turns, the latency is inside 𝒫 and 𝒬.
+    /// (1) of `on_line`: the delay τ turns, the latency is inside 𝒫 and 𝒬.
     Delay,
-    /// (2) of the module: the latency δ turns, the delay is inside.
+    /// (2) of `on_line`: the latency δ turns, the delay is inside 𝒫 and 𝒬.
     Latency,
 }
 
@@ -45,7 +45,7 @@ pub(in super::super) struct OnLine {
     pub open: Polynomial,
     /// e^(−σδ) A(σ + z).
     pub gain: Polynomial,
-    /// |B|² and |𝒜|².
+    /// |B|², and |𝒜|² in `fed`.
     own: Polynomial,
     fed: Polynomial,
     pub memory: f64,
@@ -65,7 +65,8 @@ fn plus(a: Rounded, b: Rounded) -> Rounded {
 }
 
 impl OnLine {
-    /// None where e^(−στ) or e^(−σδ) overflows.
+    /// B and A on the line Re λ = `line` at the delay `tau`; none where e^(−στ) or e^(−σδ)
+    /// overflows.
     pub(in super::super) fn new(feedback: &Feedback, tau: f64, line: f64) -> Option<Self> {
         let late = Decay::new(line, feedback.latency)?;
         let open = feedback.open.shifted(line);
@@ -151,7 +152,7 @@ impl OnLine {
         own.minus(gain.times(self.decay.lost))
     }
 
-    /// (3) or (4).
+    /// The function (3) or (4), whichever belongs to `form`.
     pub(in super::super) fn wave(&self, form: Form) -> Wave {
         match form {
             Form::Delay => self.wave_of_latency(),
@@ -159,7 +160,7 @@ impl OnLine {
         }
     }
 
-    /// (3).
+    /// The function (3), which swings with the latency.
     fn wave_of_latency(&self) -> Wave {
         let (own, fed) = (&self.own, &self.fed);
         let along = self.gain.real_product(&self.open);
@@ -200,7 +201,7 @@ impl OnLine {
         }
     }
 
-    /// (4).
+    /// The function (4), which swings with the delay.
     fn wave_of_delay(&self) -> Wave {
         let (own, fed) = (&self.own, &self.fed);
         let kept = remembered(self.memory, self.decay);

@@ -9,7 +9,7 @@ use crate::model::elementary::sincos;
 const ROUNDINGS: f64 = 4.0;
 /// What rounding of the length of a step itself may add to it.
 const A_LITTLE_LESS: f64 = 1.0 - 1e-9;
-/// Steps of Newton's method, with halvings between, until a zero is polished.
+/// The most steps of Newton's method, with halvings between, until a zero is polished.
 const MOST_POLISHINGS: usize = 100;
 const VALUES: usize = 6;
 const ERRORS: usize = 5;
@@ -56,7 +56,7 @@ fn horner<const N: usize>(coefficients: &[[f64; N]], x: f64) -> [f64; N] {
 }
 
 impl Prepared {
-    /// Of u, v and w at the delay `t`.
+    /// What is evaluated of u, v and w = `parts` at the delay `t`.
     pub(super) fn new(parts: &[Polynomial; 3], t: f64) -> Self {
         let degree = parts.iter().map(Polynomial::degree).max().unwrap_or(0);
         let mut prepared = Self {
@@ -208,7 +208,7 @@ impl Prepared {
         (at.omega, self.error(&at, (from.omega, to.omega)))
     }
 
-    /// How far the zero in the range of a monotone f can be from where `at` is.
+    /// How far the zero of f can be from where `at` is; f is monotone in the range.
     fn error(&self, at: &At, (from, to): (f64, f64)) -> f64 {
         let above = at.value.value.abs() + at.value.error;
         let slope = at.slope.value.abs() - at.slope.error;

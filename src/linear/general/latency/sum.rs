@@ -31,15 +31,16 @@ pub(super) struct Sum {
     /// The frequencies, rising, with c beyond each.
     changes: [(f64, f64); MOST_DEGREE],
     count: usize,
-    /// X is the larger one at ω = 0.
+    /// Whether X is the larger one at ω = 0.
     first_at_zero: bool,
-    /// What (7) of the derivation adds to the zeros of X right of the line for those of X + Y.
+    /// How many more zeros right of the line X + Y has than X, by (7) of
+    /// [`right_of`](super::super::right_of).
     more_zeros: i64,
 }
 
 impl Sum {
-    /// `difference` is |X|² − |Y|², and `arguments` tells the arguments of X and Y at a frequency.
-    /// None where too little is known of it.
+    /// The sum of X and Y, where `difference` is |X|² − |Y|² and `arguments` tells the arguments of
+    /// X and Y at a frequency. None where too little is known of `difference`.
     pub(super) fn new(
         difference: &Polynomial,
         switches: &mut Switches,

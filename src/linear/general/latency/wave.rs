@@ -25,10 +25,9 @@ use crate::model::elementary::power;
 
 /// Steps after which the zeros are too many to be listed.
 const MOST_STEPS: usize = 1 << 17;
-/// A step is never more than so many times as long as the one before it: the bound M belongs to its
-/// end.
+/// A step is at most this many times as long as the step before: the bound M belongs to its end.
 const GROWTH: f64 = 2.0;
-/// Part of the way to the last zero that the first step is tried with.
+/// The part of the way to the last zero that is tried as the first step.
 const FIRST_STEP: f64 = 1.0 / 16.0;
 /// Steps shorter than this part of ω lead nowhere.
 const SHORTEST_STEP: f64 = 1e-13;
@@ -92,7 +91,7 @@ impl Way<'_> {
         self.leap(&from)
     }
 
-    /// Over a stretch on which the sign of f is lost.
+    /// Goes over a stretch on which the sign of f is lost.
     fn leap(&mut self, from: &At) -> Option<Switch> {
         let mut step = SHORTEST_STEP * from.omega.max(1e-3 * self.to);
         loop {
@@ -131,7 +130,7 @@ fn between(from: &At, to: &At) -> Switch {
 pub(crate) struct Start {
     /// The sign of f right of 0; none where it is open.
     pub positive: Option<bool>,
-    /// Below this frequency there may be zeros that are not told.
+    /// The frequency below which there may be zeros that are not told.
     pub open_below: f64,
 }
 
@@ -177,7 +176,7 @@ impl Wave {
         Err(TooMany)
     }
 
-    /// As [`Wave::zeros`], all of them in a list by falling frequency.
+    /// Lists all positive zeros in the window by falling frequency; see [`Wave::zeros`].
     pub(crate) fn switches(&self, window: Window, switches: &mut Switches) -> Result<(), TooMany> {
         switches.list.clear();
         let start = self.zeros(window, 0.0, |switch| {

@@ -3,9 +3,9 @@
 use super::super::polynomial::{MOST_DEGREE, Polynomial};
 use crate::model::elementary::{power, rough_root};
 
-/// Nearer to the largest zero of a polynomial in steps of this factor.
+/// Bounds come nearer to the largest zero of a polynomial in steps of this factor.
 const NEARER: f64 = 0.7;
-/// Steps of it at most.
+/// The most such steps.
 const MOST_STEPS: u32 = 60;
 
 /// A range of frequencies.
@@ -15,22 +15,22 @@ pub(crate) struct Window {
     pub to: f64,
 }
 
-/// A frequency below which `f`, a polynomial in x = ω² that is positive at 0, has no zero; a good
-/// one.
+/// A frequency below which `f`, a polynomial in x = ω² that is positive at 0, has no zero by
+/// Budan's theorem.
 pub(crate) fn before_zeros(f: &Polynomial) -> f64 {
     let n = f.degree();
     1.0 / beyond_zeros(&Polynomial::of(n, |k| f.coefficient(n - k)))
 }
 
 /// A frequency beyond which `f`, a polynomial in x = ω² with a positive highest coefficient, has no
-/// zero; a good one.
+/// zero by Budan's theorem.
 pub(crate) fn beyond_zeros(f: &Polynomial) -> f64 {
     f.beyond_zeros().sqrt() * (1.0 + 1e-12)
 }
 
 impl Polynomial {
-    /// An x > 0 beyond which it has no zero, or 0, its highest coefficient being positive; a good
-    /// one.
+    /// An x > 0, or 0, beyond which this polynomial, whose highest coefficient is positive, has no
+    /// zero by Budan's theorem.
     pub(in crate::linear) fn beyond_zeros(&self) -> f64 {
         let f = self;
         let n = f.degree();

@@ -196,7 +196,7 @@ impl Equations {
 impl OnLine for Equations {
     type Function = Sum;
 
-    /// (1), or (5) on the imaginary axis.
+    /// The left side of (1), or of (5) on the imaginary axis.
     fn gain(&self) -> Sum {
         let (tau, latency) = (self.setting.tau, self.beyond.latency);
         let product = self.loop_product();

@@ -9,18 +9,18 @@ use crate::linear::stable_delays::StableInterval;
 use crate::model::Groups;
 use crate::model::elementary::ln;
 
-/// What feedback has beyond the letter's own, in dimensionless numbers: (1) and (2) of the room.
+/// What feedback has beyond the letter's own, in dimensionless numbers: (1) and (2) of `beyond`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Beyond {
     /// R, the memory, between −1 and 1.
     pub memory: f64,
     /// δ ≥ 0, the latency, in units of √(M/κ).
     pub latency: f64,
-    /// T_a ≥ 0, the lag of the load behind its command, in the same units.
+    /// T_a ≥ 0, the lag of the load behind its command, in units of √(M/κ).
     pub load_lag: f64,
-    /// T_v ≥ 0, that of the pulling velocity.
+    /// T_v ≥ 0, the lag of the pulling velocity behind its command, in units of √(M/κ).
     pub velocity_lag: f64,
-    /// T_s ≥ 0, that of the sensor behind the elongation.
+    /// T_s ≥ 0, the lag of the sensor behind the elongation, in units of √(M/κ).
     pub sensor_lag: f64,
 }
 
@@ -69,7 +69,7 @@ impl Beyond {
         ]
     }
 
-    /// The system (1).
+    /// The system (1) of `beyond`.
     #[must_use]
     pub fn system(&self, groups: Groups) -> System {
         let [open, gain] = self.polynomials(groups);
@@ -77,7 +77,7 @@ impl Beyond {
     }
 
     /// Whether all roots are left of Re λ = −`decay` at the delay `tau`; none where one is on that
-    /// line within rounding. On the imaginary axis it comes from the crossings, as in maps.
+    /// line within rounding. On the imaginary axis the answer comes from the crossings, as in maps.
     pub(in super::super) fn stability(&self, groups: Groups, tau: f64, decay: f64) -> Option<bool> {
         let system = self.system(groups);
         if decay == 0.0 {

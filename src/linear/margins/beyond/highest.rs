@@ -4,9 +4,9 @@ use super::super::enclosure::root_bound;
 use super::feedback::Beyond;
 use crate::model::elementary::exp;
 
-/// Nearer to the highest frequency in steps of this factor.
+/// Bounds come nearer to the highest frequency in steps of this factor.
 const NEARER: f64 = 0.8;
-/// Steps of it at most.
+/// The most such steps.
 const MOST_STEPS: u32 = 60;
 
 /// Ranges of what a setting can be: sizes up to these.
@@ -20,8 +20,8 @@ pub(in super::super) struct UpTo {
 }
 
 impl Beyond {
-    /// No root lies on λ = −σ + iω beyond this ω, σ = `decay`; infinite where they accumulate
-    /// there.
+    /// The ω beyond which no root lies on λ = −σ + iω, σ = `decay`; infinite where roots accumulate
+    /// on that line.
     ///
     /// |B₀| ≤ c |A₀|, c = e^(σδ)(1 + e^(στ))/(1 − |R| e^(στ)), where every part of A₀ is divided by
     /// the lags that it does not pass. |1 + Tλ|² = (1 − Tσ)² + T²ω² grows with ω, so what holds

@@ -16,7 +16,7 @@ use crate::linear::general::Polynomial;
 use crate::linear::rounded::Rounded;
 use crate::model::elementary::sincos;
 
-/// Delays of one sum at most.
+/// The most delays of one sum.
 const MOST_TERMS: usize = 5;
 /// Coefficients of Z: none here is of a degree above 10.
 const LENGTH: usize = 11;
@@ -49,7 +49,7 @@ impl Terms {
         }
     }
 
-    /// With `weight` · Z e^(−iωt), t of either sign; at most five sizes of t.
+    /// These terms and `weight` · Z e^(−iωt), t of either sign; at most five sizes of t.
     pub(super) fn plus(mut self, z: &Polynomial, weight: Rounded, t: f64) -> Self {
         let mut scaled = z.scaled(weight);
         if t < 0.0 {
