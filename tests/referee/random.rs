@@ -174,6 +174,13 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
     }
 }
 
+/// The same with memory, latency or both in the feedback.
+pub(crate) fn remembering_problem(chance: &mut Chance) -> Setting {
+    let mut setting = problem(chance);
+    echo(chance, &mut setting);
+    setting
+}
+
 /// A block in uncontrolled stick-slip, and the phase at which control is switched on.
 pub(crate) fn phase(chance: &mut Chance) -> (Setting, f64) {
     let mut setting = problem(chance);
