@@ -135,11 +135,25 @@ fn files_of_another_kind_are_recognised() {
     let folder = Folder::with(&[
         ("small.toml", SMALL),
         ("case.toml", &format!("switch_on = 70.0\n{CASE}")),
+        ("setting.toml", CASE),
+        ("system.toml", "P = \"s^2 + 1\"\nQ = \"0.1\"\n"),
     ]);
     expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
     expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
     for (args, says) in [
-        (&["run", "case.toml"][..], "`slipmap simulate` takes it"),
+        (&["run", "case.toml"][..], "case.toml is a case file, not a"),
+        (&["run", "case.toml"], "`slipmap plan` and `simulate` take"),
+        (
+            &["run", "setting.toml"],
+            "setting.toml is a file of a setting",
+        ),
+        (&["run", "system.toml"], "system.toml is a system file"),
+        (&["plan", "system.toml"], "`best` take it with --system"),
+        (&["simulate", "system.toml"], "not a case file"),
+        (
+            &["vc", "--setting", "system.toml"],
+            "not a file of a setting",
+        ),
         (&["simulate", "small.toml"], "`slipmap run` takes it"),
         (&["status", "case.h5"], "a trace of one motion"),
         (&["point", "--map", "case.h5"], "a trace of one motion"),
@@ -175,11 +189,17 @@ fn only_what_is_possible_is_offered() {
     let folder = Folder::with(&[("small.toml", SMALL), ("case.toml", CASE)]);
     let help = |command: &str| out(&folder.run(&[command, "--help"]));
     let offers = |command: &str, flag: &str| help(command).contains(&format!("{flag} <"));
-    for command in ["vc", "simulate"] {
+    for command in ["vc", "simulate", "basin"] {
         assert!(!offers(command, "--mu-prime") && !offers(command, "--mu-k"));
+        for flag in ["--load-lag", "--velocity-lag", "--sensor-lag", "--v-star"] {
+            assert!(!offers(command, flag), "{command} {flag}");
+        }
+        assert!(!help(command).contains("rate-and-state"), "{command}");
+        assert!(offers(command, "--memory") && offers(command, "--mu-s"));
         assert!(!help(command).contains("--mu-prime and"), "{command}");
         assert!(offers(command, "--v0") && offers(command, "--tau"));
     }
+    assert!(offers("point", "--load-lag") && offers("best", "--v-star"));
     assert!(offers("point", "--mu-prime") && offers("best", "--mu-k"));
     assert!(offers("point", "--tau") && !offers("best", "--tau"));
     let law = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];
@@ -685,4 +705,184 @@ fn schemas_say_of_each_key_what_null_means() {
         }
     }
     assert!(nullable > 50, "{nullable}");
+}
+
+/// What a command on a measured friction law says on standard error; it succeeds.
+fn told(folder: &Folder, args: &[&str]) -> String {
+    let output = folder.run(args);
+    assert_eq!(output.status.code(), Some(0), "{args:?} {}", err(&output));
+    err(&output)
+}
+
+const CURVE: &str = "0.001 0.5\n0.1 0.45\n0.5 0.4\n";
+const CONSTANT: &str = "where it is taken as constant: the slope 0 is an assumption\n";
+
+/// Beyond the points of a measured friction law its slope is 0 by assumption, which is said once
+/// for a file.
+#[test]
+fn velocities_beyond_a_measured_curve_are_warned_of() {
+    let law = "[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\nmu_s = 0.6\n";
+    let sweep = format!(
+        "[axes]\nv0 = [0.3, 0.9, 2]\ntau = [1, 2]\n[fixed]\nalpha_v = 0.1\n{law}\
+         [units]\nforce = \"N\"\nlength = \"m\"\ntime = \"s\"\n"
+    );
+    let case = format!("horizon = 1.0\n[fixed]\nv0 = 2\n{law}");
+    let folder = Folder::with(&[
+        ("curve.csv", CURVE),
+        ("sweep.toml", &sweep),
+        ("case.toml", &case),
+    ]);
+    let part = "warning: v0 from 0.9 to 2 m s-1 lies beyond the curve (0.001 to 0.5 m s-1)";
+    let part = format!("{part}, {CONSTANT}");
+    assert!(told(&folder, &["plan", "sweep.toml"]).contains(&part));
+    assert!(told(&folder, &["run", "-q", "sweep.toml"]).starts_with(&part));
+    let cell = ["--map", "sweep.h5", "--at", "tau=1", "--at", "v0=2"];
+    let in_units = told(&folder, &[&["point"], &cell[..]].concat());
+    assert!(in_units.contains("v0 = 2 m s-1 lies beyond"), "{in_units}");
+    let one = format!("warning: v0 = 2 lies beyond the curve (0.001 to 0.5), {CONSTANT}");
+    for command in ["plan", "simulate"] {
+        let said = told(&folder, &[command, "case.toml"]);
+        assert_eq!(said.matches(&one).count(), 1, "{said}");
+    }
+}
+
+/// The same of flags; and a static coefficient that nobody gave is told where it matters.
+#[test]
+fn assumptions_on_measured_friction_are_told() {
+    let folder = Folder::with(&[("curve.csv", CURVE)]);
+    let of =
+        |what: &str| format!("warning: {what} lies beyond the curve (0.001 to 0.5), {CONSTANT}");
+    let (one, of_vc) = (of("v0 = 2"), of("v_c = 3.28022"));
+    let remark = "--mu-s is not given: mu_s is taken as 1; ";
+    let table = ["--friction", "table", "--table", "curve.csv"];
+    let flags = [&table[..], &["--alpha-v", "0.1", "--tau", "1", "--v0"]].concat();
+    let best = [&table[..], &["--control", "load", "--v0"]].concat();
+    let basin = [&["--starts", "64"], &flags[..]].concat();
+    for (command, flags, warning, unsaid) in [
+        ("point", &flags, &one, false),
+        ("margins", &flags, &one, false),
+        ("best", &best, &one, true),
+        ("simulate", &flags, &one, true),
+        ("basin", &basin, &one, true),
+        ("vc", &flags, &of_vc, true),
+    ] {
+        let args = [&[command], &flags[..], &["2"]].concat();
+        let said = told(&folder, &args);
+        assert_eq!(said.matches(warning.as_str()).count(), 1, "{said}");
+        assert_eq!(said.contains(remark), unsaid, "{command}: {said}");
+        let quiet = told(&folder, &[&args[..], &["-q"]].concat());
+        assert!(quiet.contains(warning) && !quiet.contains(remark));
+        let given = told(&folder, &[&args[..], &["--mu-s", "1"]].concat());
+        assert!(!given.contains(remark), "{command}: {given}");
+    }
+    let inside = [&["point"], &flags[..], &["0.5"]].concat();
+    assert_eq!(told(&folder, &inside), "");
+}
+
+/// Where the unstable roots are counted, sliding is unstable beyond doubt.
+#[test]
+fn no_margins_are_told_with_the_roots_that_forbid_them() {
+    let folder = Folder::with(&[]);
+    let told = |args: &[&str]| out(&folder.run(args));
+    let unstable = ["margins", "--mu-prime=-0.5", "--alpha-n=-2", "--tau=5"];
+    assert_eq!(
+        told(&unstable),
+        "continuous sliding is unstable (4 roots): no margins\n"
+    );
+    assert_eq!(
+        told(&[&unstable[..], &["--decay", "0.2"]].concat()),
+        "continuous sliding is not left of -0.2 with all its roots (5 roots right of it): no \
+         margins\n"
+    );
+    let marginal = told(&["margins", "--mu-prime=0"]);
+    assert!(marginal.contains("is not known to be stable"), "{marginal}");
+    let best = told(&["best", "--mu-prime=-3"]);
+    assert!(best.contains("is unstable (2 roots): no margins"), "{best}");
+    let state = "margins --friction rate-and-state --mu0 0.6 --v-star 1 --direct-effect 0.01 \
+                 --evolution-effect 0.02 --slip-distance 1 --v0 1";
+    let text = said(&folder, &state.split_whitespace().collect::<Vec<_>>());
+    assert!(
+        text.contains("slipmap point gives its delay margin"),
+        "{text}"
+    );
+}
+
+/// Every mistake is shown where it is, and long lines only near it.
+#[test]
+fn mistakes_have_places() {
+    let law = "[friction]\nlaw = \"weakening\"\nv_s = 0.5\n";
+    let case = |fixed: &str| format!("{law}mu0 = 0.5\n[fixed]\nv0 = 0.1\n{fixed}");
+    let long = format!("a = [{}]\n[axes]\ntau = [1]\n", "1, ".repeat(30_000));
+    let folder = Folder::with(&[
+        (
+            "axis.toml",
+            &format!("{law}[fixed]\nv0 = 1\n[axes]\nmu0 = [0.5, 1.5]\ntau = [1]\n"),
+        ),
+        (
+            "mu_s.toml",
+            &format!("{law}mu0 = 0.5\nmu_s = 0.3\n[fixed]\nv0 = 1\n[axes]\ntau = [1]\n"),
+        ),
+        ("lag.toml", &case("load_lag = 0.3\n")),
+        (
+            "trace.toml",
+            &case("[trace]\nuntil = 10.0\ninterval = 1e-9\n"),
+        ),
+        (
+            "vc.toml",
+            "fields = [\"vc\"]\n[axes]\nmu_prime = [-0.3]\ntau = [1]\n",
+        ),
+        (
+            "both.toml",
+            "fields = [\"vc\", \"n_unstable\"]\n[axes]\nmu_prime = [-0.3]\ntau = [1]\n",
+        ),
+        (
+            "points.toml",
+            "[axes]\ntau = { from = 0, to = 1, points = 1e9 }\n",
+        ),
+        ("long.toml", &long),
+    ]);
+    for (args, says) in [
+        (&["plan", "axis.toml"][..], "axis.toml:7:1"),
+        (&["plan", "axis.toml"], "at most mu_s = 1 (not given: the"),
+        (&["plan", "mu_s.toml"], "mu_s.toml:5:1"),
+        (&["plan", "mu_s.toml"], "at most mu_s, else"),
+        (&["simulate", "lag.toml"], "lag.toml:7:1"),
+        (&["simulate", "trace.toml"], "trace.toml:9:12"),
+        (&["plan", "trace.toml"], "trace.toml:9:12"),
+        (&["plan", "vc.toml"], "give [friction] instead of"),
+        (&["plan", "both.toml"], "give [friction] and v0 instead of"),
+        (&["plan", "points.toml"], "write 1000000000"),
+        (&["plan", "long.toml"], "long.toml:1:1"),
+        (&["point"], "or --friction with --v0"),
+        (
+            &["best", "--friction", "coulomb", "--mu0", "1.5", "--v0", "1"],
+            "at most mu_s = 1 (not given: the default),",
+        ),
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains(says), "{args:?}: {text}");
+        assert!(text.chars().count() < 1000, "{args:?}: {text}");
+    }
+}
+
+/// Very small and very large numbers have powers of ten, and v_c has the digits that are known.
+#[test]
+fn numbers_are_short() {
+    let folder = Folder::with(&[("tiny.toml", &SMALL.replace("tau = [1,", "tau = [1e-300,"))]);
+    let point = folder.run(&["point", "--mu-prime=-0.3", "--alpha-v=-0.1", "--tau=1e-300"]);
+    expect(&point, 0, "tau 1e-300");
+    expect(
+        &folder.run(&["plan", "tiny.toml"]),
+        0,
+        "3 points, 1e-300 to 3",
+    );
+    let vc = "vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15";
+    let vc: Vec<&str> = vc.split_whitespace().collect();
+    let told = folder.run(&vc);
+    for says in ["vc 0.344467", "vc_lower 0.34446", "windows [[0,0.344467]]"] {
+        expect(&told, 0, says);
+    }
+    let json: Value =
+        serde_json::from_slice(&folder.run(&[&vc[..], &["--json"]].concat()).stdout).unwrap();
+    assert!(json["vc"].to_string().len() > 12, "{json}");
 }

@@ -380,12 +380,12 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 1.5\n",
-        "\"coulomb\"",
+        "mu0",
         "at most mu_s",
     ),
     (
         "[axes]\ntau = [1]\nmu0 = [0.5, 2]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n",
-        "\"coulomb\"",
+        "mu0",
         "at most mu_s",
     ),
     (

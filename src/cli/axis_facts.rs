@@ -1,6 +1,7 @@
 //! The facts of an axis, printed alike for a sweep and for a map.
 
 use serde::Serialize;
+use slipmap::model::Shown;
 use slipmap::report::numbers::grouped;
 use slipmap::sweep::input::quantity::Quantity;
 use utoipa::ToSchema;
@@ -28,7 +29,8 @@ impl AxisFacts {
     /// "tau   400 points, 0 to 12 s"; `unit` has a space before it, or is empty.
     pub(super) fn text(&self, unit: &str) -> String {
         let (name, points) = (&self.name, grouped(self.points));
-        let (first, last) = (self.first, self.last);
-        format!("{name:<12} {points:>10} points, {first} to {last}{unit}")
+        let plural = if self.points == 1 { "" } else { "s" };
+        let (first, last) = (Shown(self.first), Shown(self.last));
+        format!("{name:<12} {points:>10} point{plural}, {first} to {last}{unit}")
     }
 }

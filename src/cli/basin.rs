@@ -14,6 +14,7 @@ use slipmap::sweep::input::simulation::Simulation;
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
 
+use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
@@ -41,7 +42,7 @@ The error is that of 16 independent scramblings of a Sobol sequence. Starts whos
 are no part of the share: they widen the interval.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
+    parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
     cell: CellArgs,
     #[command(flatten)]
@@ -153,15 +154,14 @@ impl Args {
             }
             None => self.file.point(PointOf::Sliding)?,
         };
-        let (setting, units) = match point {
-            Some(point) => {
-                alone("--setting", by_flags)?;
-                (point.setting, point.units)
-            }
-            None => (
-                self.parameters.setting_of_motions()?,
-                self.parameters.units(),
-            ),
+        let (setting, units) = if let Some(point) = point {
+            alone("--setting", by_flags)?;
+            (point.setting, point.units)
+        } else {
+            let setting = self.parameters.setting_of_motions()?;
+            self.parameters
+                .tell_static_friction("the share depends on it");
+            (setting, self.parameters.units())
         };
         if setting.law().is_none() {
             return Err(self.refused(&BasinError::NoLaw));

@@ -6,6 +6,7 @@ use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::SearchedGain;
+use slipmap::model::{ModelError, Shown};
 use slipmap::slip::stop::Stop;
 use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_setting};
 use slipmap::sweep::input::search::Protocol;
@@ -18,11 +19,13 @@ use super::best_system::{self, SystemBest};
 use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
+use super::margins;
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say;
 use super::setting;
 use super::system_args::SystemArgs;
+use super::vc;
 
 /// All that the margins of a setting need to be asked with.
 const WANTED: Wanted = Wanted {
@@ -34,9 +37,9 @@ const WANTED: Wanted = Wanted {
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
 
 Searched where no ranges are given, with b = μ′N0/√(κM): delays from 0 to \
-four periods of the free oscillator; gains of
+four periods of the free oscillator; gains of \
 velocity control up to ±2 max(1, |b|) √(κ/M); gains of load \
-control from 4(1 + |b|) κ/μ_K below the weakest negative one that
+control from 4(1 + |b|) κ/μ_K below the weakest negative one that \
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
@@ -75,8 +78,9 @@ pub(super) struct Args {
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
     pub(super) robust: Option<f64>,
-    /// Write the best setting, with --robust that one, if one is stable, to a file that point takes
-    /// with --setting and, with a friction law, vc too, and simulate as a case file
+    /// Write the setting (the robust one with --robust), if it is stable, to a file; point and
+    /// margins take it with --setting, and with a friction law vc and basin, and simulate as a case
+    /// file
     #[arg(long, value_name = "SETTING.toml")]
     pub(super) save: Option<PathBuf>,
     /// One JSON object on standard output
@@ -103,9 +107,14 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let setting = args
         .parameters
         .setting_but(&[args.control().parameter(), Parameter::Tau], help)?;
-    setting.sliding_point()?;
+    let refused = |error: ModelError| args.parameters.refused(&error);
+    setting.sliding_point().map_err(refused)?;
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
+    args.parameters.tell_static_friction("v_c depends on it");
     let told = args.recommend(&setting, gain, &ranges)?;
+    if let Some(found) = &told.vc {
+        vc::warn_beyond_curve(&told.setting, found, &args.parameters.units());
+    }
     if args.json {
         let inputs = args.inputs(&setting, &ranges);
         json::print(&inputs, &BestAnswer::of(&told)?)?;
@@ -178,13 +187,15 @@ impl Args {
             )?),
             None => None,
         };
+        let point = Point::at(&best, WANTED)?;
         Ok(Recommended {
             control: self.control(),
             ranges: *ranges,
             spread: self.robust,
             found,
             robust,
-            margins: Point::at(&best, WANTED)?.margins,
+            unstable_roots: margins::violations(&point.stability),
+            margins: point.margins,
             vc,
             setting: best,
         })
@@ -235,8 +246,10 @@ pub(super) fn range(
     let origin = |given: Option<f64>| given.map_or(", its default", |_| "");
     Err(Failure::bad_input_with_help(
         format!(
-            "{from_flag} {low}{} is above {to_flag} {high}{}",
+            "{from_flag} {}{} is above {to_flag} {}{}",
+            Shown(low),
             origin(from),
+            Shown(high),
             origin(to)
         ),
         format!("{from_flag} must be at most {to_flag}"),

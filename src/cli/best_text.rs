@@ -153,7 +153,8 @@ fn print_recommended(
         "best"
     };
     writeln!(out, "at the {which} setting")?;
-    margins::print(out, &told.margins, &told.setting, units)?;
+    let found = (&told.margins, told.unstable_roots);
+    margins::print(out, found, &told.setting, units)?;
     match &told.vc {
         Some(found) => vc::print_short(out, found, units),
         None => Ok(()),

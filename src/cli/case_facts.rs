@@ -2,7 +2,7 @@
 //! trace.
 
 use serde::Serialize;
-use slipmap::model::Control;
+use slipmap::model::{Control, Shown};
 use slipmap::report::numbers::grouped;
 use slipmap::slip::case::Start;
 use slipmap::sweep::{CaseSpec, Parameter};
@@ -96,6 +96,7 @@ impl CaseFacts {
 
     /// A value with the unit of the quantity `name`.
     pub(super) fn with_unit(&self, name: &str, value: f64) -> String {
+        let value = Shown(value);
         let of = self.units.iter().find(|(of, _)| *of == name);
         match of.filter(|(_, unit)| unit != "1") {
             Some((_, unit)) => format!("{value} {unit}"),

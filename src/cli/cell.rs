@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use slipmap::maps::look::as_text::CellTexts;
+use slipmap::model::Shown;
 use slipmap::report::numbers::unit_behind;
 use slipmap::store::MapFile;
 use slipmap::store::tiles::Survey;
@@ -18,6 +19,7 @@ use slipmap::sweep::{Parameter, Plan, Setting};
 
 use super::failure::Failure;
 use super::open::tell_partial;
+use super::output::warn_beyond_curve;
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -70,7 +72,7 @@ impl At {
 
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}={}", self.name, self.value)
+        write!(f, "{}={}", self.name, Shown(self.value))
     }
 }
 
@@ -120,7 +122,7 @@ impl CellArgs {
         for axis in &plan.spec.axes {
             let place = self.place(axis)?;
             let unit = unit_behind(&axis.parameter.unit(&plan.spec.units));
-            let (name, value) = (axis.parameter.name(), axis.values[place]);
+            let (name, value) = (axis.parameter.name(), Shown(axis.values[place]));
             there.push(format!("{name} = {value}{unit}"));
             index.push(place);
         }
@@ -133,9 +135,12 @@ impl CellArgs {
         let Some((texts, setting)) = self.texts()? else {
             return Ok(None);
         };
-        let (text, needed) = match of {
-            PointOf::CriticalVelocity => (texts.vc, &[Needed::Law, Needed::Delay][..]),
-            _ => (texts.point, &[Needed::V0, Needed::Delay][..]),
+        let (text, needed) = if of == PointOf::CriticalVelocity {
+            (texts.vc, &[Needed::Law, Needed::Delay][..])
+        } else {
+            let units = self.plan()?.map(|plan| &plan.spec.units);
+            warn_beyond_curve(units.and_then(|units| setting.beyond_curve(units)));
+            (texts.point, &[Needed::V0, Needed::Delay][..])
         };
         let text = text.ok_or_else(|| without(&setting, needed))?;
         let read = PointSpec::read(&text, of);
@@ -176,7 +181,7 @@ impl CellArgs {
             [value] => value,
             [] => {
                 let (low, high) = axis.range();
-                let first = axis.values[0];
+                let [low, high, first] = [low, high, axis.values[0]].map(Shown);
                 let help = format!("for example --at {name}={first}; from {low} to {high}");
                 let message = format!("--at {name}=VALUE is not given");
                 return Err(Failure::bad_input_with_help(message, help));
@@ -190,6 +195,7 @@ impl CellArgs {
 /// The place on an axis of the value nearest to `value`, which must be within the axis.
 pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usize, Failure> {
     nearest(values, value).map_err(|[low, high]| {
+        let [value, low, high] = [value, low, high].map(Shown);
         let message = format!("--at {}={value} is outside the axis", of.name());
         let help = format!("it goes from {low} to {high}");
         Failure::bad_input_with_help(message, help)
@@ -205,7 +211,7 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
             match flag {
                 "--map" => "the map says everything but the cell, which --at says",
                 "--system" => "--set and --tau say everything of it",
-                _ => "the file says everything",
+                _ => "edit the file, or give all flags in its place",
             },
         )),
     }

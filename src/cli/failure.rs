@@ -7,6 +7,7 @@ use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
+use super::excerpt::excerpt;
 use super::kind::Kind;
 use super::say::{self, shortened, visible, visible_line};
 
@@ -68,6 +69,8 @@ impl Failure {
             diagnostic.message = format!("{name}: {}", diagnostic.message);
             return Self::BadInput(Report::new(diagnostic));
         };
+        let (text, span) = excerpt(text, span);
+        let text = &*text;
         // Line ends of a text from Windows are not spelled out.
         let shown = |text: &str| visible(&text.replace("\r\n", "\n"));
         let place = |at: usize| text.get(..at).map_or(0, |before| shown(before).len());

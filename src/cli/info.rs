@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use serde::Serialize;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
-use slipmap::report::numbers::{bytes, grouped, short, unit_behind};
+use slipmap::model::Shown;
+use slipmap::report::numbers::{bytes, counted, grouped, short, unit_behind};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile, trace_reader};
 use slipmap::sweep::Field;
@@ -182,7 +183,7 @@ impl Facts {
         }
         for (name, value) in &self.fixed {
             let unit = self.unit(name);
-            rows.row("fixed", format!("{name:<12} {value}{unit}"))?;
+            rows.row("fixed", format!("{name:<12} {}{unit}", Shown(*value)))?;
         }
         Ok(())
     }
@@ -232,8 +233,8 @@ impl Facts {
             }
             None => "none of them stable".to_owned(),
         };
-        let planes = grouped(best.planes);
-        rows.row("best", format!("settings of {planes} planes, {fastest}"))
+        let planes = counted(best.planes, "plane");
+        rows.row("best", format!("settings of {planes}, {fastest}"))
     }
 }
 

@@ -51,8 +51,9 @@ impl Kind {
         let (name, takers) = match self {
             Self::Map => (
                 "a map",
-                "`slipmap info`, `plot`, `export`, `verify` and `status` take it; `point`, `vc` \
-                 and `simulate` take a cell of it, by --map MAP.h5 --at AXIS=VALUE",
+                "`slipmap info`, `plot`, `export`, `verify` and `status` take it; `point`, \
+                 `margins`, `vc`, `basin` and `simulate` take a cell of it, by --map MAP.h5 --at \
+                 AXIS=VALUE",
             ),
             Self::Trace => (
                 "the trace of one motion",
@@ -62,8 +63,13 @@ impl Kind {
             Self::Text(TextKind::Case) => ("a case file", "`slipmap plan` and `simulate` take it"),
             Self::Text(TextKind::Setting) => (
                 "a file of a setting",
-                "`slipmap point` and `vc` take it with --setting; with a friction law `simulate` \
-                 takes it, too",
+                "`slipmap point` and `margins` take it with --setting; with a friction law `vc` \
+                 and `basin` do, and `simulate` takes it as a case file",
+            ),
+            Self::Text(TextKind::System) => (
+                "a system file",
+                "`slipmap point` and `best` take it with --system; a sweep file names it: \
+                 system = \"FILE\"",
             ),
         };
         (format!("{path} is {name}, not {wanted}"), takers.to_owned())

@@ -3,6 +3,9 @@
 use std::io::Write;
 
 use slipmap::explore::margins::{Margin, Margins, StabilityBox};
+use slipmap::explore::point::Point;
+use slipmap::explore::stability::{Stability, Wanted};
+use slipmap::model::Shown;
 use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
@@ -41,33 +44,76 @@ pub(super) fn described() -> AnswerSchema {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let (setting, units) = args.point.read()?;
+    if setting.has_state() {
+        let law = setting.law().map_or("", |law| law.name());
+        return Err(Failure::bad_input_with_help(
+            format!(
+                "margins of the {law} law are not known: a law of the velocity alone is needed"
+            ),
+            "slipmap point gives its delay margin and, with --json, its latency margin",
+        ));
+    }
     let margins = Margins::at(&setting, args.decay)?;
     if args.json {
         let inputs = Inputs::of_setting(&setting, &units, |_| true).and("decay", args.decay);
         return json::print(&inputs, &margins);
     }
-    print(&mut std::io::stdout().lock(), &margins, &setting, &units)?;
-    Ok(())
+    let wanted = Wanted {
+        roots: 1,
+        line: Some(-args.decay).filter(|line| *line < 0.0),
+    };
+    let violations = match margins.decays {
+        true => None,
+        false => violations(&Point::at(&setting, wanted)?.stability),
+    };
+    let mut out = std::io::stdout().lock();
+    Ok(print(&mut out, (&margins, violations), &setting, &units)?)
 }
 
-/// The margins in lines of words and numbers.
+/// The number of roots on the wrong side: of the line, where one is asked for, else of the
+/// imaginary axis. None where that is not known, or within rounding of a boundary.
+pub(super) fn violations(stability: &Stability) -> Option<u64> {
+    let known = match stability.line {
+        Some(_) => stability.n_right_of_line,
+        None => stability.n_unstable.filter(|_| !stability.marginal),
+    };
+    known.filter(|count| *count > 0)
+}
+
+/// Why there are no margins: the number of roots on the wrong side, if it is known.
+fn without_margins(margins: &Margins, violations: Option<u64>, rate: &str) -> String {
+    let required = margins.required_decay;
+    let decay = Shown(required);
+    let counted = |n: u64| match n {
+        1 => "1 root".to_owned(),
+        n => format!("{n} roots"),
+    };
+    let why = match violations.map(counted) {
+        Some(roots) if required == 0.0 => format!("unstable ({roots})"),
+        Some(roots) => {
+            format!("not left of -{decay}{rate} with all its roots ({roots} right of it)")
+        }
+        None if required == 0.0 => "not known to be stable".to_owned(),
+        None => format!("not known to be left of -{decay}{rate} with all its roots"),
+    };
+    format!("continuous sliding is {why}: no margins")
+}
+
+/// The margins in lines of words and numbers; without margins the number of roots that forbid them.
 pub(super) fn print(
     out: &mut impl Write,
-    margins: &Margins,
+    (margins, violations): (&Margins, Option<u64>),
     setting: &Setting,
     units: &Units,
 ) -> std::io::Result<()> {
     let rate = unit_behind(&units.rate());
+    if !margins.decays {
+        return writeln!(out, "{}", without_margins(margins, violations, &rate));
+    }
     let wanted = match margins.required_decay {
         0.0 => "stable".to_owned(),
-        decay => format!("left of -{decay}{rate} with all its roots"),
+        decay => format!("left of -{}{rate} with all its roots", Shown(decay)),
     };
-    if !margins.decays {
-        return writeln!(
-            out,
-            "continuous sliding is not known to be {wanted}: no margins"
-        );
-    }
     writeln!(out, "continuous sliding is {wanted}; it stays so")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let undecided = |name: &str| margins.undecided.contains(&name);

@@ -11,6 +11,7 @@
 //! - `cell`: a cell of a map instead of flags or a case file
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
+//! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
 //! - `info`: `slipmap info`
@@ -64,6 +65,7 @@ mod case_facts;
 mod cell;
 mod colours;
 mod completions;
+mod excerpt;
 mod export;
 mod failure;
 mod info;
@@ -112,6 +114,9 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use colours::Colours;
 
+/// The order of flags that every command has: behind all others.
+const LAST: usize = 1000;
+
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
 #[command(
@@ -122,10 +127,11 @@ use colours::Colours;
 )]
 struct Cli {
     /// Colours in help, errors, warnings and previews
-    #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN")]
+    #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN",
+          display_order = LAST)]
     color: Colours,
     /// Nothing on standard error but errors and warnings: no progress, no remarks
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, display_order = LAST)]
     quiet: bool,
     #[command(subcommand)]
     command: Command,

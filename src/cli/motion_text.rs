@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use slipmap::model::Shown;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
@@ -96,7 +97,7 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
             kept",
             digits(summary.decided)
         ),
-        Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
+        Outcome::Undecided => format!("undecided at the horizon, t = {}", Shown(spec.case.horizon)),
         Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
     }
 }

@@ -8,8 +8,8 @@ use slipmap::report::numbers::grouped;
 use slipmap::store::output::hidden_beside;
 use slipmap::store::tiles::{TileReader, shards};
 use slipmap::store::{MapFile, Output};
-use slipmap::sweep::Field;
 use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
 use super::output::provenance;
@@ -44,9 +44,10 @@ pub(super) fn held_field(map: &MapFile, name: &str) -> Result<Field, Failure> {
     let field = Field::from_name(name).filter(|field| map.fields().contains(field));
     field.ok_or_else(|| {
         let held: Vec<&str> = map.fields().iter().map(|field| field.name()).collect();
-        let meant = match Field::from_name(name) {
-            Some(_) => String::new(),
-            None => did_you_mean(name, held.iter().copied()),
+        let meant = match (Field::from_name(name), Parameter::from_name(name)) {
+            (Some(_), _) => String::new(),
+            (None, Some(_)) => format!("{name} is a parameter, not a field; "),
+            (None, None) => did_you_mean(name, held.iter().copied()),
         };
         Failure::bad_input_with_help(
             format!("--field: the map does not hold {name}"),

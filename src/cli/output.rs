@@ -116,6 +116,13 @@ pub(super) fn warn_of_idle_delay(idle: bool) {
     }
 }
 
+/// Warns once if the sliding velocity lies beyond a measured friction curve, by this remark.
+pub(super) fn warn_beyond_curve(remark: Option<String>) {
+    if let Some(remark) = remark {
+        say::remark(format_args!("warning: {remark}"));
+    }
+}
+
 /// Reports on standard error what a map has besides cells.
 pub(super) fn tell_assembled(assembled: &Assembled) {
     if assembled.curves > 0 {

@@ -10,11 +10,12 @@ use slipmap::sweep::Parameter;
 use slipmap::sweep::input::law_kind::{Formula, LawKind, NO_MOTIONS};
 use slipmap::sweep::input::parameter::Group;
 use slipmap::sweep::input::setting::Setting;
+use slipmap::sweep::input::simulation::NOT_IN_MOTIONS;
 use slipmap::sweep::input::units::Units;
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
-use super::output::warn_of_idle_delay;
+use super::output::{warn_beyond_curve, warn_of_idle_delay};
 use super::parameter_values::Values;
 use super::say;
 use super::sweep_file::read_table;
@@ -23,7 +24,7 @@ use super::sweep_file::read_table;
 #[derive(Debug, Args)]
 struct LawArgs {
     /// Friction law, instead of --mu-prime and --mu-k
-    #[arg(long, value_parser = law_names())]
+    #[arg(long, value_parser = law_names(false))]
     friction: Option<String>,
     /// Points of a measured friction law, for --friction table: two columns, speed and μ_K
     #[arg(long, value_name = "FILE.csv")]
@@ -34,10 +35,14 @@ struct LawArgs {
     units: Option<Units>,
 }
 
-/// Friction laws by name, with their formulas.
-fn law_names() -> PossibleValuesParser {
-    let formulas = Formula::ALL.into_iter();
-    let formulas = formulas.map(|law| PossibleValue::new(law.name()).help(law.formula()));
+/// Friction laws by name, with their formulas; those without motions are hidden where motions are
+/// followed.
+fn law_names(of_motions: bool) -> PossibleValuesParser {
+    let formulas = Formula::ALL.into_iter().map(move |law| {
+        let hidden = of_motions && LawKind::Formula(law).has_state();
+        let value = PossibleValue::new(law.name()).help(law.formula());
+        value.hide(hidden)
+    });
     let table = PossibleValue::new(LawKind::TABLE)
         .help("The points in the file --table, joined by monotone cubics");
     PossibleValuesParser::new(formulas.chain([table]))
@@ -72,7 +77,9 @@ impl<A: Asks> ParameterArgs<A> {
     fn offered(arg: Arg) -> Arg {
         let parameter = Parameter::from_name(arg.get_id().as_str());
         let of_slope = |p: Parameter| p.group() == Group::Sliding;
-        let in_vain = (A::LAW && parameter.is_some_and(of_slope))
+        let moves = |p: Parameter| !NOT_IN_MOTIONS.contains(&p) && !LawKind::only_with_state(p);
+        let refused = |p: Parameter| of_slope(p) || !moves(p);
+        let in_vain = (A::LAW && parameter.is_some_and(refused))
             || (A::SEARCHES_DELAY && parameter == Some(Parameter::Tau));
         arg.hide(in_vain)
     }
@@ -83,7 +90,9 @@ impl<A: Asks> Args for ParameterArgs<A> {
         let command = command.args(Values::flags(Self::without_law).map(Self::offered));
         let command = LawArgs::augment_args(command);
         let command = match A::LAW {
-            true => command.mut_arg("friction", |arg| arg.help("Friction law")),
+            true => command.mut_arg("friction", |arg| {
+                arg.help("Friction law").value_parser(law_names(true))
+            }),
             false => command,
         };
         command.args(Values::flags(Self::of_law).map(Self::offered))
@@ -129,9 +138,7 @@ impl<A: Asks> ParameterArgs<A> {
             "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
         match (self.law.friction.as_deref(), &self.law.table) {
             (Some(LawKind::TABLE), Some(path)) => {
-                let mu_s = Parameter::MuS;
-                let given = self.given(mu_s).or(mu_s.default_value());
-                let table = read_table(path, given.unwrap_or(1.0))?;
+                let table = read_table(path, self.given(Parameter::MuS))?;
                 Ok(Some(LawKind::Table(table)))
             }
             (Some(LawKind::TABLE), None) => Err(Failure::bad_input_with_help(
@@ -215,6 +222,21 @@ impl<A: Asks> ParameterArgs<A> {
         }
     }
 
+    /// Tells that μ_S is not given with a measured friction law, whose points say nothing about it,
+    /// and what depends on it.
+    pub(super) fn tell_static_friction(&self, dependence: &str) {
+        let (mu_s, table) = (Parameter::MuS, Some(LawKind::TABLE));
+        if let Some(value) = mu_s.default_value()
+            && self.law.friction.as_deref() == table
+            && self.given(mu_s).is_none()
+        {
+            let (flag, name) = (flag(mu_s), mu_s.name());
+            say::note(format_args!(
+                "{flag} is not given: {name} is taken as {value}; {dependence}"
+            ));
+        }
+    }
+
     /// The units of all numbers.
     pub(super) fn units(&self) -> Units {
         self.law.units.clone().unwrap_or_default()
@@ -255,6 +277,7 @@ impl<A: Asks> ParameterArgs<A> {
         for parameter in searched {
             if let Some(value) = self.given(*parameter) {
                 let (flag, name) = (flag(*parameter), parameter.name());
+                let value = Shown(value);
                 return Err(Failure::bad_input_with_help(
                     format!("{flag} {value} would fix {name}, which is searched"),
                     help,
@@ -279,6 +302,9 @@ impl<A: Asks> ParameterArgs<A> {
         if !searched.contains(&Parameter::Tau) {
             warn_of_idle_delay(setting.has_idle_delay());
         }
+        if left_out != Some(Parameter::V0) {
+            warn_beyond_curve(setting.beyond_curve(&self.units()));
+        }
         Ok(setting)
     }
 
@@ -288,8 +314,12 @@ impl<A: Asks> ParameterArgs<A> {
         let Some(parameter) = Parameter::ALL.into_iter().find(named) else {
             return Failure::bad_input(error.to_string());
         };
+        let mu_s = Parameter::MuS;
+        let default = mu_s.default_value().filter(|_| self.given(mu_s).is_none());
+        let allowed = error.allowed_by_default(default);
         if self.given(parameter).is_some() {
-            return Failure::out_of_range(&flag(parameter), error);
+            let (flag, value) = (flag(parameter), Shown(error.value));
+            return Failure::bad_input(format!("{flag} {value} is outside its range: {allowed}"));
         }
         let follows = matches!(parameter, Parameter::Mu0 | Parameter::VS);
         let from = match (follows, self.given(Parameter::MuPrimeRest)) {
@@ -297,10 +327,9 @@ impl<A: Asks> ParameterArgs<A> {
             _ => String::new(),
         };
         Failure::bad_input(format!(
-            "{} = {}{from} is outside its range: {}",
+            "{} = {}{from} is outside its range: {allowed}",
             parameter.name(),
             Shown(error.value),
-            error.allowed
         ))
     }
 }

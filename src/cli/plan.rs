@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use slipmap::report::numbers::{bytes, grouped, seconds, unit_behind};
+use slipmap::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
 use slipmap::store::schema::STATUS;
 use slipmap::store::tiles::RecordEncoder;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
@@ -20,7 +20,7 @@ use utoipa::ToSchema;
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::output::warn_of_idle_delay;
+use super::output::{warn_beyond_curve, warn_of_idle_delay};
 use super::plan_case;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::say::Rows;
@@ -71,10 +71,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         }
         Described::Case(spec) => {
             warn_of_idle_delay(spec.setting.has_idle_delay());
+            warn_beyond_curve(spec.setting.beyond_curve(&spec.units));
             return plan_case::tell(&args.sweep, &spec, args.json);
         }
     };
     warn_of_idle_delay(plan.spec.has_idle_delay());
+    warn_beyond_curve(plan.spec.beyond_curve());
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
     let facts = Facts::of(&plan, threads)?;
@@ -172,23 +174,24 @@ impl Facts {
         rows.row("tiles", format!("{tiles} of {cells} cells"))?;
         rows.row(
             "boundaries",
-            format!("in {} planes", grouped(self.boundary_planes)),
+            format!("in {}", counted(self.boundary_planes, "plane")),
         )?;
         if let Some(planes) = self.best_planes {
-            rows.row("best", format!("in {} planes", grouped(planes)))?;
+            rows.row("best", format!("in {}", counted(planes, "plane")))?;
         }
         let (size, stored) = (bytes(self.bytes), bytes(self.bytes_on_disk));
         let text = format!(
             "{size} before compression, about {stored} on disk, twice that for a moment at the end"
         );
         rows.row("bytes", text)?;
-        let (memory, threads) = (bytes(self.memory), self.threads);
-        rows.row("memory", format!("up to {memory} on {threads} threads"))?;
+        let (memory, threads) = (bytes(self.memory), counted(self.threads as u64, "thread"));
+        rows.row("memory", format!("up to {memory} on {threads}"))?;
+        let timed = format!("{} of {tiles} tiles timed", self.tiles_timed);
         let [least, about, most] = self.seconds.map(seconds);
-        let timed = self.tiles_timed;
-        let text = format!(
-            "about {about} on {threads} threads, {least} to {most}: {timed} of {tiles} tiles timed"
-        );
+        let text = match self.seconds[2] < 0.01 {
+            true => format!("under 0.01 s on {threads}: {timed}"),
+            false => format!("about {about} on {threads}, {least} to {most}: {timed}"),
+        };
         rows.row("time", text)
     }
 }

@@ -58,10 +58,9 @@ impl Facts {
             .map(|(end, each)| multiples(end, each));
         if let Some(samples) = samples.filter(|&samples| samples > MOST_SAMPLES as u64) {
             let (samples, most) = (grouped(samples), grouped(MOST_SAMPLES as u64));
-            return Err(Failure::bad_input_with_help(
-                format!("the trace would have {samples} samples, {most} are the most"),
-                "[trace] until = … ends it earlier, interval = … makes it coarser",
-            ));
+            let message = format!("the trace would have {samples} samples, {most} are the most");
+            let name = path.display().to_string();
+            return Err(Failure::in_file(spec.too_long(message), &name, &spec.text));
         }
         let trace = match path == Path::new(STANDARD_INPUT) {
             true => None,

@@ -8,6 +8,7 @@ use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Spectrum, Stability, Wanted};
 use slipmap::explore::system_point::SystemPoint;
 use slipmap::linear::general::Reason;
+use slipmap::model::Shown;
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
 use slipmap::sweep::input::system::{Evaluation, SystemModel};
@@ -262,10 +263,10 @@ fn print(
         .filter(|(parameter, _)| setting.uses(*parameter));
     for (parameter, value) in given.into_iter().chain(beyond) {
         let unit = unit_behind(&units.of_parameter(parameter));
-        row(parameter.name(), format!("{value}{unit}"))?;
+        row(parameter.name(), format!("{}{unit}", Shown(value)))?;
     }
     if let Some(ratio) = point.stiffness_ratio {
-        row(Field::StiffnessRatio.name(), ratio.to_string())?;
+        row(Field::StiffnessRatio.name(), Shown(ratio).to_string())?;
     }
     print_stability(stability, true, units, &mut row)?;
     tell_dimensionless(out, units)
@@ -288,6 +289,7 @@ pub(super) fn print_stability(
         row("reason", reason.into())?;
     }
     if let Some(line) = stability.line {
+        let line = Shown(line);
         let line = format!("{} of {line}", or_unknown(stability.n_right_of_line));
         row(
             "right of line",
@@ -296,7 +298,7 @@ pub(super) fn print_stability(
     }
     let time = unit_behind(&units.time());
     let margin = match stability.delay_margin {
-        Some(margin) => format!("{margin}{time}"),
+        Some(margin) => format!("{}{time}", Shown(margin)),
         None if stability.delay_margin_sign == 0 => "unknown".into(),
         None => "infinite: no delay changes stability".into(),
     };
@@ -313,14 +315,14 @@ pub(super) fn print_stability(
         ),
     ] {
         let unit = unit_behind(&unit);
-        let text = value.map_or("unknown".into(), |v| format!("{v}{unit}"));
+        let text = value.map_or("unknown".into(), |v| format!("{}{unit}", Shown(v)));
         row(name, text)?;
     }
     if let Some(essential) = stability.essential_abscissa {
         let unit = unit_behind(&units.rate());
         row(
             "essential",
-            format!("{essential}{unit}: roots accumulate there"),
+            format!("{}{unit}: roots accumulate there", Shown(essential)),
         )?;
     }
     if line_of_delays {
@@ -343,10 +345,10 @@ fn print_delays(
         };
         let text = format!(
             "{direction} at omega = {}{}, tau = {}{time} + k {}{time}",
-            crossing.omega,
+            Shown(crossing.omega),
             unit_behind(&units.angular_frequency()),
-            crossing.first_delay,
-            std::f64::consts::TAU / crossing.omega
+            Shown(crossing.first_delay),
+            Shown(std::f64::consts::TAU / crossing.omega)
         );
         row("crossing", text)?;
     }
@@ -354,8 +356,8 @@ fn print_delays(
         row("stable delays", "none".into())?;
     }
     for interval in stability.stable_delays.iter().take(INTERVALS_SHOWN) {
-        let end = interval[1].map_or("infinity".into(), |to| format!("{to}{time}"));
-        let from = interval[0].unwrap_or(0.0);
+        let end = interval[1].map_or("infinity".into(), |to| format!("{}{time}", Shown(to)));
+        let from = Shown(interval[0].unwrap_or(0.0));
         row("stable delays", format!("{from}{time} < tau < {end}"))?;
     }
     let more = stability

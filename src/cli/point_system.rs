@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use slipmap::explore::system_point::SystemPoint;
+use slipmap::model::Shown;
 use slipmap::sweep::input::system::{Evaluation, SystemModel};
 use slipmap::sweep::input::units::Units;
 
@@ -55,12 +56,12 @@ pub(super) fn print(
             "1" => String::new(),
             unit => format!(" {unit}"),
         };
-        row(&own.name, format!("{value}{unit}"))?;
+        row(&own.name, format!("{}{unit}", Shown(*value)))?;
     }
-    row("tau", point.tau.to_string())?;
+    row("tau", Shown(point.tau).to_string())?;
     for (name, value) in [("memory", point.memory), ("latency", point.latency)] {
         if let Some(value) = value {
-            row(name, value.to_string())?;
+            row(name, Shown(value).to_string())?;
         }
     }
     if !point.line_of_delays {
@@ -71,7 +72,7 @@ pub(super) fn print(
     }
     if point.memory.is_some() {
         let none = match point.latency_margin {
-            Some(margin) => margin.to_string(),
+            Some(margin) => Shown(margin).to_string(),
             None => "infinite, or not known".into(),
         };
         row("latency_margin", none)?;

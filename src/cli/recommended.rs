@@ -31,6 +31,9 @@ pub(super) struct Recommended {
     /// The recommended setting: the robust one, if there is one.
     pub(super) setting: Setting,
     pub(super) margins: Margins,
+    /// The number of unstable roots of the recommended setting; none where it is stable, or where
+    /// that is not known.
+    pub(super) unstable_roots: Option<u64>,
     /// v_c, if there is a friction law.
     pub(super) vc: Option<CriticalVelocity>,
 }

@@ -16,7 +16,7 @@ use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
-use super::output::{self, output_path, provenance, warn_of_idle_delay};
+use super::output::{self, output_path, provenance, warn_beyond_curve, warn_of_idle_delay};
 use super::say;
 use super::show::{nothing_to_do, show};
 use super::signals::Signals;
@@ -110,6 +110,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     warn_of_idle_delay(plan.spec.has_idle_delay());
+    warn_beyond_curve(plan.spec.beyond_curve());
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));

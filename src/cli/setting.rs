@@ -10,7 +10,7 @@ use slipmap::sweep::input::setting_text::setting_text;
 use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
-use super::output::warn_of_idle_delay;
+use super::output::{warn_beyond_curve, warn_of_idle_delay};
 use super::sweep_file::read_setting;
 
 /// The first words of a file of a setting.
@@ -36,6 +36,9 @@ impl SettingArgs {
         };
         let point = read_setting(path, of)?;
         warn_of_idle_delay(point.setting.has_idle_delay());
+        if of == PointOf::Sliding {
+            warn_beyond_curve(point.setting.beyond_curve(&point.units));
+        }
         Ok(Some(point))
     }
 }
@@ -66,8 +69,8 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
 /// Writes a setting, completely or not at all.
 pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
     let takers = match setting.law() {
-        Some(_) => "point and vc take it with --setting, simulate as a case file",
-        None => "point takes it with --setting",
+        Some(_) => "point, margins, vc and basin take it with --setting, simulate as a case file",
+        None => "point and margins take it with --setting",
     };
     let text = setting_text(setting, units, |_| true);
     let text = format!("{HEAD}; {takers}\n\n{text}");

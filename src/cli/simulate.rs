@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
+use slipmap::model::Shown;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::table::write_samples;
@@ -21,7 +22,9 @@ use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
-use super::output::{check_picture, output_path, provenance, warn_of_idle_delay};
+use super::output::{
+    check_picture, output_path, provenance, warn_beyond_curve, warn_of_idle_delay,
+};
 use super::parameters::ParameterArgs;
 use super::plot;
 use super::say;
@@ -74,11 +77,14 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let spec = args.read()?;
     // A cell of a map has a delay whatever its gains are; flags are checked when they are read.
     warn_of_idle_delay(args.case.is_some() && spec.setting.has_idle_delay());
+    if args.case.is_some() || args.cell.map.is_some() {
+        warn_beyond_curve(spec.setting.beyond_curve(&spec.units));
+    }
     if spec.start_assumed {
         say::note(format_args!(
             "no start is given: the block begins with x_dot0 = {}{}, {} % faster than it is \
              pulled",
-            spec.case.initial_state().0,
+            Shown(spec.case.initial_state().0),
             unit_behind(&spec.units.of_parameter(Parameter::XDot0)),
             100.0 * DISTURBED,
         ));
@@ -91,16 +97,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         check_picture("--picture", picture, Some(&path))?;
     }
     check_replaced(&path, &spec, args.fresh)?;
-    let trace = follow(&spec, &signals)?;
+    let trace = args.follow(&spec, &signals)?;
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &args.provenance())?;
     args.tell(&spec, &trace, &path)?;
     args.draw_and_tell((&spec, &trace), &path, &signals)
-}
-
-fn follow(spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
-    let trace = signals.or_end("there is no trace", || Trace::of(spec));
-    trace.map_err(failure)
 }
 
 /// Writes only the samples, as text.
@@ -117,7 +118,7 @@ fn simulate_to_text(
         };
         check_picture("--picture", picture, other)?;
     }
-    let trace = follow(spec, signals)?;
+    let trace = args.follow(spec, signals)?;
     let quantities: Vec<_> = trace_file::QUANTITIES.iter().collect();
     to.write(signals, "there is no trace", |out, stop| {
         write_samples((spec, &trace), &quantities, false, out, stop)
@@ -136,6 +137,20 @@ fn simulate_to_text(
 }
 
 impl Args {
+    fn follow(&self, spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
+        let trace = signals.or_end("there is no trace", || Trace::of(spec));
+        trace.map_err(|error| match error {
+            TraceError::TooLong(_) => {
+                let from = match &self.case {
+                    Some(case) => case.display().to_string(),
+                    None => "the case".to_owned(),
+                };
+                Failure::in_file(spec.too_long(error.to_string()), &from, &spec.text)
+            }
+            error => failure(&error),
+        })
+    }
+
     /// Reads the case.
     fn read(&self) -> Result<CaseSpec, Failure> {
         if let Some(case) = &self.case {
@@ -159,6 +174,8 @@ impl Args {
             ));
         }
         let setting = self.parameters.setting()?;
+        self.parameters
+            .tell_static_friction("when sticks end depends on it");
         let units = self.parameters.units();
         Ok(setting_text(&setting, &units, |_| true))
     }
@@ -305,13 +322,9 @@ fn draw(
     }
 }
 
-fn failure(error: TraceError) -> Failure {
+fn failure(error: &TraceError) -> Failure {
     match error {
-        TraceError::Case(error) => Failure::bad_input(error.to_string()),
-        TraceError::TooLong(_) => Failure::bad_input_with_help(
-            error.to_string(),
-            "[trace] until = … ends it earlier, interval = … makes it coarser",
-        ),
+        TraceError::Case(_) | TraceError::TooLong(_) => Failure::bad_input(error.to_string()),
         TraceError::Stopped => Failure::failed(error.to_string()),
         TraceError::OutgrowsPast => Failure::bad_input_with_help(
             error.to_string(),

@@ -20,8 +20,26 @@ use super::kind::Kind;
 /// bytes, into manifests.
 const MOST_BYTES: u64 = 16 << 20;
 
+/// Refuses a file at `path` of a kind of text that is not `wanted`, in words.
+fn check_kind(
+    path: &Path,
+    wanted: &str,
+    refused: impl Fn(TextKind) -> bool,
+) -> Result<(), Failure> {
+    match Kind::of(path) {
+        Some(kind @ Kind::Text(text)) if refused(text) => {
+            let (message, help) = kind.not(path, wanted);
+            Err(Failure::bad_input_with_help(message, help))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The plan of the sweep file at `path`.
 pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
+    check_kind(path, "a sweep file, which has [axes]", |kind| {
+        kind != TextKind::Sweep
+    })?;
     read_with_table(path, "sweep", |text| {
         text.parse::<SweepSpec>().and_then(Plan::new)
     })
@@ -37,6 +55,8 @@ pub(super) enum Described {
 
 /// Reads the sweep or case file at `path`.
 pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
+    let system = |kind| kind == TextKind::System;
+    check_kind(path, "a sweep or case file", system)?;
     read_with_table(path, "sweep", |text| {
         if is_case_file(text) {
             return text.parse().map(Described::Case);
@@ -48,20 +68,21 @@ pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
 
 /// The case of the case file at `path`.
 pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
+    check_kind(path, "a case file", |kind| kind == TextKind::System)?;
     read_with_table(path, "case", str::parse)
 }
 
 /// Reads a point from the file at `path`.
 pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failure> {
-    if let Some(kind @ Kind::Text(TextKind::Sweep | TextKind::Case)) = Kind::of(path) {
-        let (message, help) = kind.not(path, "a file of a setting");
-        return Err(Failure::bad_input_with_help(message, help));
-    }
+    check_kind(path, "a file of a setting", |kind| {
+        kind != TextKind::Setting
+    })?;
     read_with_table(path, "setting", |text| PointSpec::read(text, of))
 }
 
-/// Reads a friction curve from the two columns of the file at `path`, for a law with this `mu_s`.
-pub(super) fn read_table(path: &Path, mu_s: f64) -> Result<Table, Failure> {
+/// Reads a friction curve from the two columns of the file at `path`, for a law with this `mu_s`,
+/// its default if none is given.
+pub(super) fn read_table(path: &Path, mu_s: Option<f64>) -> Result<Table, Failure> {
     let (name, text) = text_of(path, "table")?;
     table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
 }

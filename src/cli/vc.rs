@@ -4,9 +4,10 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
+use serde_json::Value;
 use slipmap::critical::switch_on::Phase;
 use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
-use slipmap::report::numbers::unit_behind;
+use slipmap::report::numbers::{bound, rounded, unit_behind};
 use slipmap::slip::stop::Stop;
 use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::search::{self, PHASES};
@@ -18,6 +19,7 @@ use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
+use super::output;
 use super::parameters::{ParameterArgs, flag};
 use super::setting::SettingArgs;
 
@@ -66,6 +68,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
         alone("--map", by_flags || args.parameters.any_but(&[]))?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
+        warn_beyond_curve(&point.setting, &found, &point.units);
         let inputs = inputs(&point.setting, &point.units, point.protocol);
         return print_found(args.json.then_some(&inputs), &found, &point.units);
     }
@@ -79,7 +82,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             print(
                 args.json.then_some(&inputs),
                 &found,
-                None,
+                (|_: &str, _: &Value| None, &[]),
                 &Units::default(),
             )
         }
@@ -91,6 +94,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
+            warn_beyond_curve(&setting, &found, &units);
             let inputs = inputs(&setting, &units, protocol);
             print_found(args.json.then_some(&inputs), &found, &units)
         }
@@ -114,16 +118,29 @@ fn inputs(setting: &Setting, units: &Units, protocol: search::Protocol) -> Input
     }
 }
 
+/// Number of digits after the first one of v_c and its bounds: as many as are known.
+const DIGITS: usize = 5;
+
 /// The bounds of v_c in words, if it is undecided.
 fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
     let unit = unit_behind(&Field::Vc.unit(units));
-    let ends = match (found.vc_lower, found.vc_upper) {
+    let lower = found.vc_lower.map(|v| bound(v, DIGITS, false));
+    let upper = found.vc_upper.map(|v| bound(v, DIGITS, true));
+    let ends = match (lower, upper) {
         (None, None) => String::new(),
         (None, Some(upper)) => format!(", below {upper}{unit}"),
         (Some(lower), None) => format!(", above {lower}{unit}"),
         (Some(lower), Some(upper)) => format!(", between {lower}{unit} and {upper}{unit}"),
     };
     (!found.decided).then(|| format!("not known{ends}"))
+}
+
+/// Warns if v_c lies beyond the points of a measured friction law.
+pub(super) fn warn_beyond_curve(setting: &Setting, found: &CriticalVelocity, units: &Units) {
+    // 0 is no velocity at which it slides: stick-slip is never sustained.
+    let vc = found.vc.filter(|vc| found.decided && *vc > 0.0);
+    let vc = vc.and_then(|vc| rounded(vc, DIGITS).parse().ok());
+    output::warn_beyond_curve(vc.and_then(|vc| setting.vc_beyond_curve(vc, units)));
 }
 
 /// v_c in a line or two, with the velocity of lift-off.
@@ -135,12 +152,17 @@ pub(super) fn print_short(
     let unit = unit_behind(&Field::Vc.unit(units));
     let vc = match (not_known(found, units), found.vc) {
         (Some(text), _) => text,
-        (None, Some(vc)) => format!("{vc}{unit}"),
+        (None, Some(vc)) => format!("{}{unit}", rounded(vc, DIGITS)),
         (None, None) => format!("none: {}", found.outcome),
     };
     writeln!(out, "  {:<16} {vc}", Field::Vc.name())?;
     if let Some(v) = found.v_liftoff.filter(|_| found.decided) {
-        writeln!(out, "  {:<16} {v}{unit}", Field::VLiftoff.name())?;
+        writeln!(
+            out,
+            "  {:<16} {}{unit}",
+            Field::VLiftoff.name(),
+            rounded(v, DIGITS)
+        )?;
     }
     Ok(())
 }
@@ -150,15 +172,50 @@ fn print_found(
     found: &CriticalVelocity,
     units: &Units,
 ) -> Result<(), Failure> {
-    print(json, found, not_known(found, units).as_deref(), units)
+    let not_known = not_known(found, units);
+    let unit = unit_behind(&Field::Vc.unit(units));
+    let told = |key: &str, value: &Value| {
+        let rounded = |up: Option<bool>| Some(shown(value.as_f64()?, up) + &unit);
+        match (key, &not_known) {
+            ("vc", Some(_)) => not_known.clone(),
+            ("vc" | "v_liftoff", None) => rounded(None),
+            ("vc_lower", _) => rounded(Some(false)),
+            ("vc_upper", _) => rounded(Some(true)),
+            ("windows", None) => {
+                let of: Vec<[f64; 2]> = serde_json::from_value(value.clone()).ok()?;
+                Some(windows(of) + &unit)
+            }
+            _ => None,
+        }
+    };
+    let hidden: &[&str] = match not_known {
+        Some(_) => &["v_liftoff", "windows"],
+        None => &[],
+    };
+    print(json, found, (told, hidden), units)
 }
 
-/// Prints the object as one line of JSON with its inputs, or its entries one per line. If v_c is
-/// `not_known`, people see neither v_c, nor the velocity of lift-off, nor windows.
+/// A velocity with as many digits as are known; a bound upwards or downwards.
+fn shown(value: f64, up: Option<bool>) -> String {
+    match up {
+        Some(up) => bound(value, DIGITS, up),
+        None => rounded(value, DIGITS),
+    }
+}
+
+/// Windows in brackets.
+fn windows(of: Vec<[f64; 2]>) -> String {
+    let ends = of.into_iter().map(|ends| ends.map(|end| shown(end, None)));
+    let ends: Vec<String> = ends.map(|[from, to]| format!("[{from},{to}]")).collect();
+    format!("[{}]", ends.join(","))
+}
+
+/// Prints the object as one line of JSON with its inputs, or its entries one per line. For people
+/// the value of a key is `told` in words of its own, if it has any, and keys are `hidden`.
 fn print(
     json: Option<&Inputs>,
     found: &impl Serialize,
-    not_known: Option<&str>,
+    (told, hidden): (impl Fn(&str, &Value) -> Option<String>, &[&str]),
     units: &Units,
 ) -> Result<(), Failure> {
     if let Some(inputs) = json {
@@ -166,13 +223,14 @@ fn print(
     }
     let mut out = std::io::stdout().lock();
     let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
-    for (key, value) in value.as_object().into_iter().flatten() {
-        let shown = match (value, not_known) {
-            (_, Some(text)) if key == "vc" => text.to_owned(),
-            (_, Some(_)) if key == "v_liftoff" || key == "windows" => continue,
-            (serde_json::Value::String(text), _) => text.clone(),
-            (serde_json::Value::Null, _) => "none".into(),
-            (other, _) => format!("{other}{}", unit_behind(&unit_of(key, units))),
+    let entries = value.as_object().into_iter().flatten();
+    for (key, value) in entries.filter(|(key, _)| !hidden.contains(&key.as_str())) {
+        let unit = unit_behind(&unit_of(key, units));
+        let shown = match (told(key, value), value) {
+            (Some(text), _) => text,
+            (None, Value::String(text)) => text.clone(),
+            (None, Value::Null) => "none".into(),
+            (None, other) => format!("{other}{unit}"),
         };
         writeln!(out, "{key:<20} {shown}")?;
     }
@@ -200,6 +258,7 @@ impl Args {
             return Ok((point.setting, point.units));
         }
         let setting = self.parameters.setting_without_v0()?;
+        self.parameters.tell_static_friction("v_c depends on it");
         Ok((setting, self.parameters.units()))
     }
 

@@ -46,6 +46,9 @@ pub enum NoAnswer {
     /// The system is of a kind that is not answered at any delay.
     #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
     Refused,
+    /// There is no equation.
+    #[error("this system is not answered: P and Q are both 0")]
+    Zero,
 }
 
 impl SystemPoint {
@@ -56,7 +59,10 @@ impl SystemPoint {
     pub fn at(model: &SystemModel, at: &mut Evaluation, wanted: Wanted) -> Result<Self, NoAnswer> {
         let system = model.at(at)?;
         if system.class() == Class::Refused {
-            return Err(NoAnswer::Refused);
+            return Err(match system.is_zero() {
+                true => NoAnswer::Zero,
+                false => NoAnswer::Refused,
+            });
         }
         let own = model.parameters.iter().map(|own| own.name.clone());
         let line_of_delays = !model.depends_on_delay();

@@ -11,6 +11,7 @@ use super::branches::starting_values;
 use super::collocation::{MOST_NODES, nodes_for};
 use super::equation::Equation;
 use super::newton::{Root, divide, polish};
+use crate::model::Shown;
 use crate::model::elementary::{norm, sqrt};
 
 /// The most attempts at collocation, each with more nodes than the one before.
@@ -46,7 +47,7 @@ pub struct RootFinder {
 
 /// Some roots right of the line were not found, or one lies on it.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("not every characteristic root right of {line} was found")]
+#[error("not every characteristic root right of {} was found", Shown(*line))]
 pub struct Incomplete {
     /// The line.
     pub line: f64,

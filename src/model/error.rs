@@ -9,7 +9,7 @@ pub struct Shown(pub f64);
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(value) = self;
-        let plain = *value == 0.0 || (1e-6..1e13).contains(&value.abs()) || !value.is_finite();
+        let plain = *value == 0.0 || (1e-5..1e15).contains(&value.abs()) || !value.is_finite();
         if plain {
             write!(f, "{value}")
         } else {
@@ -17,6 +17,10 @@ impl fmt::Display for Shown {
         }
     }
 }
+
+/// What friction coefficients at rest are allowed to be.
+pub(super) const AT_MOST_MU_S: &str =
+    "at most mu_s, else release from stick would accelerate backwards";
 
 /// A parameter outside the range in which the model has a meaning.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -31,6 +35,25 @@ pub struct ModelError {
 }
 
 impl ModelError {
+    /// The range allowed, with the value of μ_S where it is the default, which nobody wrote.
+    #[must_use]
+    pub fn allowed_by_default(&self, mu_s: Option<f64>) -> String {
+        match mu_s {
+            Some(mu_s) if self.allowed == AT_MOST_MU_S => {
+                let default = format!("at most mu_s = {mu_s} (not given: the default)");
+                self.allowed.replacen("at most mu_s", &default, 1)
+            }
+            _ => self.allowed.to_owned(),
+        }
+    }
+
+    /// The error in words, with that range.
+    #[must_use]
+    pub fn with_default_mu_s(&self, mu_s: Option<f64>) -> String {
+        let allowed = self.allowed_by_default(mu_s);
+        self.to_string().replacen(self.allowed, &allowed, 1)
+    }
+
     /// The error of a friction law that lacks a required property; `allowed` names the property.
     #[must_use]
     pub const fn of_law(allowed: &'static str) -> Self {
@@ -98,6 +121,9 @@ mod tests {
             (1e12, "1000000000000"),
             (-1e300, "-1e300"),
             (2.5e-9, "2.5e-9"),
+            (9.9e-6, "9.9e-6"),
+            (1e-5, "0.00001"),
+            (1e-300, "1e-300"),
             (f64::INFINITY, "inf"),
             (f64::NAN, "NaN"),
         ] {

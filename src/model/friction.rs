@@ -1,5 +1,6 @@
 //! Kinetic friction laws μ_K(v), each with value and slope.
 
+use super::error::AT_MOST_MU_S;
 use super::{ModelError, Table};
 use crate::model::elementary::exp;
 
@@ -169,8 +170,7 @@ fn checked_coefficients(mu0: f64, mu_s: f64) -> Result<(f64, f64), ModelError> {
 
 /// μ_K(0⁺) ≤ μ_S.
 fn checked_at_rest(parameter: &'static str, at_rest: f64, mu_s: f64) -> Result<(), ModelError> {
-    let allowed = "at most mu_s, else release from stick would accelerate backwards";
-    ModelError::check(parameter, at_rest, allowed, at_rest <= mu_s).map(|_| ())
+    ModelError::check(parameter, at_rest, AT_MOST_MU_S, at_rest <= mu_s).map(|_| ())
 }
 
 #[cfg(test)]

@@ -69,9 +69,7 @@ impl TableColumn {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TableError {
     /// Too few, too many, or not in pairs.
-    #[error(
-        "{speeds} speeds and {mu_k} values of mu_k: as many of each are needed, 2 to {MOST_POINTS}"
-    )]
+    #[error("{}", counted(*speeds, *mu_k))]
     Count {
         /// Number of speeds.
         speeds: usize,
@@ -90,6 +88,18 @@ pub enum TableError {
         /// The range allowed, in words.
         allowed: &'static str,
     },
+}
+
+/// What is wrong with so many speeds and values of μ_K.
+fn counted(speeds: usize, mu_k: usize) -> String {
+    match speeds {
+        1 if mu_k == 1 => format!("only 1 point: 2 to {MOST_POINTS} are needed"),
+        points if mu_k == points => format!("{points} points: 2 to {MOST_POINTS} are needed"),
+        _ => format!(
+            "{speeds} speeds and {mu_k} values of mu_k: as many of each are needed, 2 to \
+             {MOST_POINTS}"
+        ),
+    }
 }
 
 /// One cubic of a table: Σ c_k w^k, w = (v − from)/width.

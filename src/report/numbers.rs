@@ -2,6 +2,8 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use crate::model::Shown;
+
 /// The last second of the year 9999, in seconds since 1970.
 const LAST_SECOND: u64 = 253_402_300_799;
 
@@ -84,7 +86,30 @@ pub fn short(value: f64) -> String {
 #[must_use]
 pub fn rounded(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.digits$e}").parse::<f64>();
-    rounded.unwrap_or(value).to_string()
+    Shown(rounded.unwrap_or(value)).to_string()
+}
+
+/// A bound with at most `digits` digits after its first one, rounded up or down: outwards, so that
+/// it stays a bound.
+#[must_use]
+pub fn bound(value: f64, digits: usize, up: bool) -> String {
+    let text = format!("{value:.digits$e}");
+    let near = text.parse::<f64>().unwrap_or(value);
+    let inside = if up { near < value } else { near > value };
+    if !inside || !value.is_finite() {
+        return Shown(near).to_string();
+    }
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse().ok());
+    let step = 10_f64.powi(exponent.unwrap_or(0_i32) - digits as i32);
+    let sign = if up { 1.0 } else { -1.0 };
+    rounded(near + sign * step, digits)
+}
+
+/// A count of things with regular plurals: "1 plane", "12 000 planes".
+#[must_use]
+pub fn counted(n: u64, thing: &str) -> String {
+    let plural = if n == 1 { "" } else { "s" };
+    format!("{} {thing}{plural}", grouped(n))
 }
 
 /// A unit to follow a number, after a space; empty for "1".
@@ -106,6 +131,16 @@ mod tests {
         assert_eq!(grouped(0), "0");
         assert_eq!(grouped(999), "999");
         assert_eq!(grouped(8_658_009), "8 658 009");
+        assert_eq!(counted(1, "plane"), "1 plane");
+        assert_eq!(counted(12_000, "plane"), "12 000 planes");
+        assert_eq!(bound(0.123_456_4, 5, true), "0.123457");
+        assert_eq!(bound(0.123_456_4, 5, false), "0.123456");
+        assert_eq!(bound(0.123_456_6, 5, false), "0.123456");
+        assert_eq!(bound(0.999_999_6, 5, false), "0.99999");
+        assert_eq!(bound(-0.123_456_6, 5, true), "-0.123456");
+        assert_eq!([bound(0.5, 5, true), bound(0.5, 5, false)], ["0.5", "0.5"]);
+        assert_eq!(rounded(1.0 / 3.0, 2), "0.333");
+        assert_eq!(rounded(1e-300 / 3.0, 2), "3.33e-301");
         assert_eq!(prefixed(12_345_678.0), "12.3 M");
         assert_eq!(prefixed(0.5), "0.50");
         assert_eq!(bytes(512), "512 B");

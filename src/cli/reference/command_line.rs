@@ -95,7 +95,8 @@ fn about(arg: &Arg) -> String {
     }
     let possible = arg.get_possible_values();
     if !possible.is_empty() && arg.get_action().takes_values() {
-        let names: Vec<_> = possible.iter().map(PossibleValue::get_name).collect();
+        let offered = possible.iter().filter(|value| !value.is_hide_set());
+        let names: Vec<_> = offered.map(PossibleValue::get_name).collect();
         let _ = write!(text, " [values: {}]", names.join(", "));
     }
     text

@@ -57,6 +57,12 @@ impl Class {
 }
 
 impl System {
+    /// Whether P and Q are 0 everywhere: then every λ is a root.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.p.is_zero() && self.q.is_zero()
+    }
+
     /// The system of these P and Q.
     #[must_use]
     pub fn direct(p: Polynomial, q: Polynomial) -> Self {

@@ -47,6 +47,9 @@ pub enum NotSearched {
     /// Nothing can be said of any delay.
     #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
     Refused,
+    /// There is no equation.
+    #[error("this system is not answered: P and Q are both 0")]
+    Zero,
 }
 
 /// The ranges that are searched where none are given. Delays: up to four periods of the slowest
@@ -104,8 +107,12 @@ pub fn best_of_system(
         model.at(&mut moved)
     };
     let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
-    if system_at(middle(ranges.gain), middle(ranges.tau))?.class() == Class::Refused {
-        return Err(NotSearched::Refused);
+    let in_the_middle = system_at(middle(ranges.gain), middle(ranges.tau))?;
+    if in_the_middle.class() == Class::Refused {
+        return Err(match in_the_middle.is_zero() {
+            true => NotSearched::Zero,
+            false => NotSearched::Refused,
+        });
     }
     let known = |value: f64, tau: f64| system_at(value, tau).ok();
     Ok(best::best(&Search {

@@ -51,6 +51,9 @@ const MOST_SAMPLES: u64 = 64;
 /// Keys of sweep files that case files do not have.
 const OF_SWEEPS: [&str; 5] = ["fields", "axes", "boundaries", "best", "protocol"];
 
+/// Keys that only system files have.
+const OF_SYSTEMS: [&str; 4] = ["P", "Q", "B", "A"];
+
 /// How densely a motion is sampled between its events.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sampling {
@@ -91,6 +94,8 @@ pub enum TextKind {
     Case,
     /// A setting alone, which both kinds have. With a friction law it can be read as a case.
     Setting,
+    /// A system file.
+    System,
 }
 
 /// The kind of a text, by its keys; none where they do not fit one kind.
@@ -101,6 +106,8 @@ pub fn kind_of_text(text: &str) -> Option<TextKind> {
     let all = |known: &[&str]| entries.iter().all(|entry| known.contains(&entry.key));
     if entries.iter().any(|entry| OF_SWEEPS.contains(&entry.key)) {
         Some(TextKind::Sweep)
+    } else if entries.iter().any(|e| OF_SYSTEMS.contains(&e.key)) {
+        Some(TextKind::System)
     } else if entries.is_empty() || !all(&names(&CASE)) {
         None
     } else if all(&["fixed", "friction", "units"]) {
@@ -120,6 +127,28 @@ pub fn is_case_file(text: &str) -> bool {
     let entries = entries(document.get_ref(), "");
     let has = |keys: &[&str]| entries.iter().any(|entry| keys.contains(&entry.key));
     !has(&OF_SWEEPS) && (has(&["switch_on", "trace"]) || text.parse::<CaseSpec>().is_ok())
+}
+
+impl CaseSpec {
+    /// The error of a trace that would be too long, at the key of the text that makes it so.
+    #[must_use]
+    pub fn too_long(&self, message: String) -> SpecError {
+        let place = || {
+            let document = parse(&self.text).ok()?;
+            let all = entries(document.get_ref(), "");
+            let trace = all.iter().find(|entry| entry.key == "trace")?;
+            let keys = trace.table().ok()?;
+            let key = |name: &str| keys.iter().find(|entry| entry.key == name);
+            let found = key("interval").or_else(|| key("samples"));
+            let found = found.or_else(|| key("until"));
+            Some(found.map_or(&trace.key_span, |entry| &entry.span).clone())
+        };
+        SpecError {
+            span: place(),
+            ..SpecError::whole(message)
+                .help("[trace] until = … ends it earlier, interval = … makes it coarser")
+        }
+    }
 }
 
 impl std::str::FromStr for CaseSpec {
@@ -222,7 +251,7 @@ impl Draft {
             let v0 = setting.get(Parameter::V0);
             setting.set(Parameter::XDot0, (1.0 + DISTURBED) * v0);
         }
-        let case = self.case(&setting, &law_place)?;
+        let case = self.case(&setting)?;
         case.motion().map_err(|error| self.refused(&error))?;
         Ok(CaseSpec {
             title: std::mem::take(&mut self.title),
@@ -237,8 +266,7 @@ impl Draft {
     }
 
     /// The motion, with the defaults that depend on parameters.
-    fn case(&self, setting: &Setting, law_place: &Range<usize>) -> Result<Case, SpecError> {
-        let place = self.given.ill_posed_place().unwrap_or(law_place);
+    fn case(&self, setting: &Setting) -> Result<Case, SpecError> {
         self.given.check_start()?;
         let phase = self.given.place(Parameter::SwitchOnPhase);
         let switch_on = match (&self.switch_on, phase) {
@@ -251,7 +279,7 @@ impl Draft {
         let case = self
             .simulation
             .case(setting, switch_on)
-            .map_err(|error| SpecError::at(place.clone(), error.to_string()))?
+            .map_err(|error| self.given.refused(&error))?
             .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
         let name = match phase {
             Some(_) => Parameter::SwitchOnPhase.name(),
@@ -324,6 +352,22 @@ mod tests {
     }
 
     #[test]
+    fn the_key_that_makes_a_trace_too_long_is_pointed_at() {
+        for (trace, at) in [
+            ("[trace]\nuntil = 9.0\ninterval = 1e-9\n", "1e-9"),
+            ("[trace]\nuntil = 9.0\n", "9.0"),
+            ("[trace]\n", "trace"),
+        ] {
+            let text = format!("{PLAIN}{trace}");
+            let spec: CaseSpec = text.parse().unwrap();
+            let place = spec.too_long(String::new()).span.unwrap();
+            assert_eq!(&text[place], at);
+        }
+        let spec: CaseSpec = PLAIN.parse().unwrap();
+        assert_eq!(spec.too_long(String::new()).span, None);
+    }
+
+    #[test]
     fn mistakes_are_pointed_at() {
         for (text, says, at) in [
             ("", "needs a friction law", None),
@@ -356,6 +400,11 @@ mod tests {
                 Some("\"coulomb\""),
             ),
             ("fixed.mu_k = 1.0", "mu_k has no meaning", Some("mu_k")),
+            (
+                "fixed.load_lag = 0.3",
+                "load_lag = 0.3 is outside",
+                Some("load_lag"),
+            ),
         ] {
             let friction = "friction = { law = \"coulomb\", mu0 = 0.4 }\nfixed.v0 = 0.1\n";
             let whole = match at {

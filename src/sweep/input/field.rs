@@ -4,6 +4,7 @@
 
 use super::catalogue::catalogue;
 use super::nearest::did_you_mean;
+use super::parameter::Parameter;
 use super::regime_at_v0::RegimeAtV0;
 use super::source::{OfLinear, OfMargins, OfRoots, Slope, Source};
 use super::units::Units;
@@ -978,7 +979,10 @@ pub fn known_fields() -> String {
 /// A message about an unknown name: which field may be meant, and all fields.
 #[must_use]
 pub fn fields_meant(name: &str) -> String {
-    let meant = did_you_mean(name, Field::ALL.map(Field::name));
+    let meant = match Parameter::from_name(name) {
+        Some(parameter) => format!("{} is a parameter, not a field; ", parameter.name()),
+        None => did_you_mean(name, Field::ALL.map(Field::name)),
+    };
     format!("{meant}known: {}", known_fields())
 }
 

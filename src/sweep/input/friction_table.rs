@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::parameter::Parameter;
 use super::toml_reader::{Entry, SpecError};
 use crate::model::table::{TableColumn, TableError};
 use crate::model::{FrictionLaw, Table};
@@ -135,6 +136,12 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
     })
 }
 
+/// What is wrong with a line that is no point.
+const NOT_A_POINT: &str = "this line is not two numbers with decimal points, a speed and mu_k";
+/// What lines are.
+const COLUMNS: &str = "two columns, separated by a comma, a semicolon or blanks; only the first \
+    line may be of titles";
+
 /// Reads a table from a text with one line per point: the speed and μ_K, separated by a comma, a
 /// semicolon or blanks. Empty lines, lines that begin with `#`, and one line of titles before the
 /// first point are skipped.
@@ -146,16 +153,17 @@ pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
 }
 
 /// Reads a table as [`table_of_columns`] does, for a friction law with the static coefficient
-/// `mu_s`.
+/// `mu_s`, its default if none is given.
 ///
 /// # Errors
 /// As there, and when the law is ill-posed, see [`FrictionLaw::table`].
-pub fn table_of_law(text: &str, mu_s: f64) -> Result<Table, SpecError> {
+pub fn table_of_law(text: &str, mu_s: Option<f64>) -> Result<Table, SpecError> {
     let (table, at_rest) = read_columns(text)?;
-    let posed = FrictionLaw::table(table.clone(), mu_s);
+    let default = Parameter::MuS.default_value().filter(|_| mu_s.is_none());
+    let posed = FrictionLaw::table(table.clone(), mu_s.or(default).unwrap_or(1.0));
     posed.map_err(|error| SpecError {
         span: at_rest,
-        ..SpecError::whole(error.to_string())
+        ..SpecError::whole(error.with_default_mu_s(default))
     })?;
     Ok(table)
 }
@@ -182,7 +190,7 @@ fn read_columns(text: &str) -> Result<(Table, Option<Range<usize>>), SpecError> 
             [None, None] if speeds.values.is_empty() && !titles => titles = true,
             _ => {
                 let place = from..from + line.trim_end().len();
-                return Err(SpecError::at(place, "expected a speed and a value of mu_k"));
+                return Err(SpecError::at(place, NOT_A_POINT).help(COLUMNS));
             }
         }
     }
@@ -237,19 +245,24 @@ mod tests {
     #[test]
     fn mistakes_in_columns_are_pointed_at() {
         for (text, place, says) in [
-            ("", "", "0 speeds and 0 values of mu_k"),
-            ("0,0.5\n", "", "1 speeds and 1 values"),
-            ("0,0.5\n1\n", "1", "expected a speed and a value"),
-            ("0,0.5\n1,x\n", "1,x", "expected a speed"),
-            ("v\nmu\n0,1\n", "v", "expected a speed"),
-            ("a b\nc d\n", "c d", "expected a speed"),
+            ("", "", "0 points: 2 to 4096 are needed"),
+            ("0,0.5\n", "", "only 1 point: 2 to 4096 are needed"),
+            ("0,0.5\n1\n", "1", "not two numbers"),
+            ("0,0.5\n0.1;0,4\n", "0.1;0,4", "not two numbers"),
+            ("0,0.5\n1,x\n", "1,x", "not two numbers"),
+            ("v\nmu\n0,1\n", "v", "not two numbers"),
+            ("a b\nc d\n", "c d", "not two numbers"),
             ("0,0.5\n2,0.4\n1,0.4", "1", "speeds = 1 is outside"),
             ("0,0.5\n1,-4\n", "-4", "mu_k = -4 is outside its range"),
             ("0,0.5\nnan,1\n", "nan", "speeds = NaN"),
-            ("0 0.5 1\n", "0 0.5 1", "expected a speed"),
-            ("0,1.5\n1,0.4\n", "1.5", "at most mu_s"),
+            ("0 0.5 1\n", "0 0.5 1", "not two numbers"),
+            (
+                "0,1.5\n1,0.4\n",
+                "1.5",
+                "at most mu_s = 1 (not given: the default), else",
+            ),
         ] {
-            let error = table_of_law(text, 1.0).unwrap_err();
+            let error = table_of_law(text, None).unwrap_err();
             assert!(error.message.contains(says), "{text}: {error}");
             let found = error.span.clone().map_or("", |span| &text[span]);
             assert_eq!(found, place, "{text}: {error}");

@@ -11,6 +11,8 @@ use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 use super::units::Units;
+use crate::model::ModelError;
+use crate::model::table::TableColumn;
 
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
@@ -164,9 +166,39 @@ impl GivenParameters {
         }
     }
 
-    /// The place at which an ill-posed friction law is reported: its value at rest, or its name.
-    pub(super) fn ill_posed_place(&self) -> Option<&Range<usize>> {
-        self.table.at_rest().or(self.law_place())
+    /// An error of the model at its place, see [`GivenParameters::place_of`].
+    pub(super) fn refused(&self, error: &ModelError) -> SpecError {
+        let mu_s = Parameter::MuS;
+        let said = self.place(mu_s).is_none().then(|| mu_s.default_value());
+        SpecError {
+            span: self.place_of(error).cloned(),
+            ..SpecError::whole(error.with_default_mu_s(said.flatten()))
+        }
+    }
+
+    /// The place at which an error of the model is reported: the value at rest of a table, the
+    /// parameter that it names or from which that follows, else the name of the law. Where a fixed
+    /// μ0 is above a given μ_S, the latter is to blame.
+    fn place_of(&self, error: &ModelError) -> Option<&Range<usize>> {
+        let at_rest = self.table.at_rest();
+        let named = Parameter::from_name(error.parameter);
+        let fixed = |p: Parameter| self.values.iter().any(|(given, _)| *given == p);
+        let mu_s = || match named {
+            Some(p @ Parameter::Mu0) if fixed(p) => self.place(Parameter::MuS),
+            _ => None,
+        };
+        // Without a value of its own it follows from the slope at rest.
+        let slope = || match named {
+            Some(Parameter::Mu0 | Parameter::VS) => self.place(Parameter::MuPrimeRest),
+            _ => None,
+        };
+        let place = || named.and_then(|p| self.place(p));
+        at_rest
+            .filter(|_| error.parameter == TableColumn::MuK.name())
+            .or_else(mu_s)
+            .or_else(place)
+            .or_else(slope)
+            .or(self.law_place())
     }
 
     /// The place of the name of the friction law, if there is one.

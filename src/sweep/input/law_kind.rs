@@ -1,7 +1,7 @@
 //! The friction law of a sweep.
 
 use super::catalogue::catalogue;
-use super::parameter::Parameter;
+use super::parameter::{Group, Parameter};
 use super::setting::Setting;
 use crate::model::{FrictionLaw, ModelError, RateAndState, Table};
 
@@ -164,6 +164,15 @@ impl LawKind {
     #[must_use]
     pub const fn has_state(&self) -> bool {
         matches!(self, Self::Formula(Formula::RateAndState))
+    }
+
+    /// Whether only laws with a state have this parameter.
+    #[must_use]
+    pub fn only_with_state(parameter: Parameter) -> bool {
+        let laws = Formula::ALL.map(Self::Formula).into_iter();
+        let mut with =
+            laws.filter(|law| law.parameters().contains(&parameter) || law.optional() == parameter);
+        parameter.group() == Group::Law && with.all(|law| law.has_state())
     }
 
     /// The law of a setting, with its state; none for a law without a state.

@@ -3,6 +3,7 @@
 //! - `axis`: axis values, each from its index alone
 //! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
 //! - `best_plane`: the planes of a sweep in which the best setting is searched for
+//! - `beyond_curve`: remarks on velocities beyond the points of a measured friction law
 //! - `case_file`: the case file: one motion, read and checked once
 //! - `catalogue`: enumerations with a table of facts, one row for each value
 //! - `command`: the command line for a setting
@@ -39,6 +40,7 @@
 pub mod axis;
 pub mod basin;
 pub mod best_plane;
+mod beyond_curve;
 pub mod case_file;
 mod catalogue;
 pub mod command;

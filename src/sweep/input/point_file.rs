@@ -104,10 +104,7 @@ impl PointSpec {
             PointOf::Sliding => setting.sliding_point().map(drop),
             _ => setting.friction_law().map(drop),
         };
-        posed.map_err(|error| SpecError {
-            span: given.ill_posed_place().cloned(),
-            ..SpecError::whole(error.to_string())
-        })?;
+        posed.map_err(|error| given.refused(&error))?;
         Ok(Self {
             protocol: protocol.at(&setting),
             setting,

@@ -62,7 +62,14 @@ impl GivenError {
     pub fn help(self, name: fn(Parameter) -> String) -> String {
         use Parameter::{Mu0, MuK, MuPrime, MuPrimeRest, V0, VS};
         match self {
-            Self::Missing(p) => format!("{}: {}, {}", name(p), p.long_name(), p.allowed()),
+            Self::Missing(p) => {
+                let law = match (p, name(V0)) {
+                    (MuPrime, v0) if v0.starts_with("--") => format!("; or --friction with {v0}"),
+                    (MuPrime, v0) => format!("; or [friction] with {v0}"),
+                    _ => String::new(),
+                };
+                format!("{}: {}, {}{law}", name(p), p.long_name(), p.allowed())
+            }
             Self::Unused(p) if p.of_limit() => {
                 "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its \
                 parameters are gamma and mu_ratio"

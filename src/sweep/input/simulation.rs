@@ -7,7 +7,7 @@ use super::keys::{SIMULATION, names};
 use super::parameter::{LARGEST, Parameter};
 use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
-use crate::model::{Control, ModelError};
+use crate::model::{Control, ModelError, Shown};
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
 
@@ -114,8 +114,11 @@ impl Simulation {
     pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
         match (&self.horizon, &self.horizon_place) {
             (Some(horizon), Some(place)) if *horizon <= switch_on => {
-                let message =
-                    format!("horizon: {horizon} is not later than {name}, which is {switch_on}");
+                let message = format!(
+                    "horizon: {} is not later than {name}, which is {}",
+                    Shown(*horizon),
+                    Shown(switch_on)
+                );
                 Err(SpecError::at(place.clone(), message))
             }
             _ => Ok(()),

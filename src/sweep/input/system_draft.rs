@@ -118,6 +118,10 @@ pub(super) fn refused(field: Field, model: &SystemModel) -> Option<(&'static str
         | Source::Roots(_)
         | Source::Linear(_)
         | Source::Margins(OfMargins::Latency) => None,
-        _ => Some(("it is about a block on its spring", OTHERS)),
+        Source::Margins(_) => Some(("it needs the block on its spring", OTHERS)),
+        _ => Some((
+            "it needs the block on its spring; a system from a file has no motions",
+            OTHERS,
+        )),
     }
 }

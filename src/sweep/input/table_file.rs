@@ -136,7 +136,10 @@ fn points(
             .span
             .map(|span| 1 + text[..span.start].matches('\n').count());
         let line = line.map_or_else(String::new, |line| format!(":{line}"));
-        entry.error(format!("{name}{line}: {}", error.message))
+        SpecError {
+            help: error.help,
+            ..entry.error(format!("{name}{line}: {}", error.message))
+        }
     })?;
     let pairs = table.speeds().iter().zip(table.mu_k());
     let pairs: Vec<String> = pairs
@@ -206,7 +209,10 @@ mod tests {
             "friction.table: cannot read none.csv: there is none"
         );
         let (_, message) = place("friction.table = \"bad.csv\"");
-        assert!(message.contains("bad.csv:4: expected a speed"), "{message}");
+        assert!(
+            message.contains("bad.csv:4: this line is not two"),
+            "{message}"
+        );
     }
 
     /// Places before, inside and after the points are mapped to the original text.

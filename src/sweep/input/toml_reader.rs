@@ -173,11 +173,17 @@ impl<'t> Entry<'t> {
 
     /// A whole number, not negative.
     pub(super) fn whole(&self) -> Result<u64, SpecError> {
-        match self.value {
-            DeValue::Integer(integer) => u64::from_str_radix(integer.as_str(), integer.radix())
-                .map_err(|_| self.error("expected a whole number between 0 and 2^64 − 1")),
-            _ => Err(self.expected("a whole number")),
+        if let DeValue::Integer(integer) = self.value {
+            return u64::from_str_radix(integer.as_str(), integer.radix())
+                .map_err(|_| self.error("expected a whole number between 0 and 2^64 − 1"));
         }
+        let error = self.expected("a whole number");
+        // 2^53: beyond it not all whole numbers are told from one another.
+        let whole = |n: &f64| (0.0..=9_007_199_254_740_992.0).contains(n) && n.fract() == 0.0;
+        Err(match self.number().ok().filter(whole) {
+            Some(number) => error.help(format!("write {number}")),
+            None => error,
+        })
     }
 
     pub(super) fn boolean(&self) -> Result<bool, SpecError> {

@@ -71,9 +71,6 @@ impl Draft {
 
     /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
-        let Some(place) = self.given.ill_posed_place() else {
-            return Ok(());
-        };
         let mut worst = fixed.clone();
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
@@ -90,7 +87,7 @@ impl Draft {
         worst
             .friction_law()
             .map(|_| ())
-            .map_err(|e| SpecError::at(place.clone(), e.to_string()))
+            .map_err(|error| self.given.refused(&error))
     }
 }
 
@@ -132,8 +129,11 @@ impl Draft {
             return Ok(());
         }
         let message = format!("this field needs a friction law: {why}");
-        Err(SpecError::at(place.clone(), message)
-            .help("give [friction] and v0 instead of mu_prime and mu_k"))
+        let help = match self.needs_v0() {
+            true => "give [friction] and v0 instead of mu_prime and mu_k",
+            false => "give [friction] instead of mu_prime and mu_k",
+        };
+        Err(SpecError::at(place.clone(), message).help(help))
     }
 
     /// Checks that no delay is 0 where a gain acts.
