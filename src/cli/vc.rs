@@ -178,9 +178,10 @@ fn print_found(
         let rounded = |up: Option<bool>| Some(shown(value.as_f64()?, up) + &unit);
         match (key, &not_known) {
             ("vc", Some(_)) => not_known.clone(),
-            ("vc" | "v_liftoff", None) => rounded(None),
-            ("vc_lower", _) => rounded(Some(false)),
-            ("vc_upper", _) => rounded(Some(true)),
+            // What is decided bounds itself.
+            ("vc" | "v_liftoff" | "vc_lower" | "vc_upper", None) => rounded(None),
+            ("vc_lower", Some(_)) => rounded(Some(false)),
+            ("vc_upper", Some(_)) => rounded(Some(true)),
             ("windows", None) => {
                 let of: Vec<[f64; 2]> = serde_json::from_value(value.clone()).ok()?;
                 Some(windows(of) + &unit)

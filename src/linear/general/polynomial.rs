@@ -57,7 +57,8 @@ impl Polynomial {
         }
         let mut all = Self::ZERO;
         all.values[..coefficients.len()].copy_from_slice(coefficients);
-        Ok(all.trimmed(coefficients.len().saturating_sub(1)))
+        all.trim(coefficients.len().saturating_sub(1));
+        Ok(all)
     }
 
     /// `value` ± `error` everywhere.
@@ -84,14 +85,14 @@ impl Polynomial {
             let Rounded { value, error } = coefficient(k);
             (all.values[k], all.errors[k]) = (value, error);
         }
-        all.trimmed(degree)
+        all.trim(degree);
+        all
     }
 
-    /// This polynomial with the degree that is left without exact zeros, at most `degree`.
-    fn trimmed(mut self, degree: usize) -> Self {
+    /// Sets the degree to what is left without exact zeros, at most `degree`.
+    fn trim(&mut self, degree: usize) {
         let nonzero = |&k: &usize| self.values[k] != 0.0 || self.errors[k] != 0.0;
         self.degree = (0..=degree).rev().find(nonzero).unwrap_or(0);
-        self
     }
 
     /// The degree; 0 for constants, 0 itself among them.
