@@ -13,9 +13,10 @@ const NOTHING: Rounded = Rounded {
 /// where rounding leaves that open. The highest coefficient is certain to differ from 0.
 pub(super) fn zeros_on_the_right(p: &Polynomial) -> Option<usize> {
     let n = p.degree();
-    let (mut upper, mut lower) = ([NOTHING; COLUMNS], [NOTHING; COLUMNS]);
+    let (mut one, mut other) = ([NOTHING; COLUMNS], [NOTHING; COLUMNS]);
+    let (mut upper, mut lower) = (&mut one, &mut other);
     for k in 0..=n {
-        let row = if k % 2 == 0 { &mut upper } else { &mut lower };
+        let row = if k % 2 == 0 { &mut *upper } else { &mut *lower };
         row[k / 2] = p.coefficient(n - k);
     }
     let mut changes = 0;
@@ -42,7 +43,7 @@ pub(super) fn zeros_on_the_right(p: &Polynomial) -> Option<usize> {
             upper[j] = Rounded { value, error };
         }
         upper[length.div_ceil(2)] = NOTHING;
-        (upper, lower) = (lower, upper);
+        std::mem::swap(&mut upper, &mut lower);
     }
     Some(changes)
 }

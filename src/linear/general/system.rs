@@ -72,6 +72,7 @@ impl System {
     /// The system of the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and
     /// the latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere memory and
     /// latency are ignored: there is nothing to remember and nothing that could be late.
+    #[inline]
     #[must_use]
     pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
         if gain.is_zero() {
@@ -100,6 +101,7 @@ impl System {
         Ok(Self::direct(Polynomial::new(p)?, Polynomial::new(q)?))
     }
 
+    #[inline]
     pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
         let mut system = Self {
             p,
