@@ -17,7 +17,7 @@ use utoipa::ToSchema;
 
 use super::best::{Args, range};
 use super::best_answer::OptimumNumbers;
-use super::best_text::{frequency_of, print_regions, short};
+use super::best_text::{abscissa_of, frequency_of, nothing_decays, print_regions, short};
 use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, Inputs};
@@ -279,13 +279,14 @@ impl Asked {
             )?,
             None => writeln!(
                 out,
-                "{title} has no stable setting in the ranges; the least unstable one is"
+                "{title} has {}",
+                nothing_decays(!found.regions.is_empty())
             )?,
         }
         let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
         row(&self.name, short(best.gain))?;
         row("tau", short(best.tau))?;
-        row("abscissa", short(best.abscissa))?;
+        row("abscissa", abscissa_of(best, ""))?;
         row("frequency", frequency_of(best).unwrap_or("none".into()))?;
         row("kind", best.kind.name().into())?;
         let certified = if best.certified { "yes" } else { "no" };

@@ -18,6 +18,22 @@ pub(super) fn short(value: f64) -> String {
     rounded(value, 8)
 }
 
+/// What is told where nothing is stable, or where it is not known how fast anything decays.
+pub(super) fn nothing_decays(stable: bool) -> &'static str {
+    match stable {
+        false => "no stable setting in the ranges; the least unstable one is",
+        true => "stable settings, but it is not known how fast disturbances decay; one of them is",
+    }
+}
+
+/// An abscissa in words.
+pub(super) fn abscissa_of(best: &Optimum, unit: &str) -> String {
+    match best.abscissa.is_finite() {
+        true => format!("{}{unit}", short(best.abscissa)),
+        false => "not known".into(),
+    }
+}
+
 /// The lowest frequency of an optimum; none where its roots have none, because they accumulate.
 pub(super) fn frequency_of(best: &Optimum) -> Option<String> {
     let told = !best.frequencies.is_empty();
@@ -41,10 +57,7 @@ pub(super) fn print(
             "sliding relaxes fastest, with the relaxation time {}{time}, at",
             short(relaxation)
         )?,
-        None => writeln!(
-            out,
-            "no stable setting in the ranges; the least unstable one is"
-        )?,
+        None => writeln!(out, "{}", nothing_decays(!found.regions.is_empty()))?,
     }
     let (searched, other) = match told.control {
         Control::Velocity => (Parameter::AlphaV, Parameter::AlphaN),
@@ -57,8 +70,10 @@ pub(super) fn print(
     row(searched.name(), with(searched, best.gain))?;
     row("tau", with(Parameter::Tau, best.tau))?;
     let unit = |field: Field| unit_behind(&field.unit(units));
-    let abscissa = format!("{}{}", short(best.abscissa), unit(Field::Abscissa));
-    row(Field::Abscissa.name(), abscissa)?;
+    row(
+        Field::Abscissa.name(),
+        abscissa_of(best, &unit(Field::Abscissa)),
+    )?;
     let frequency = frequency_of(best).map(|f| f + &unit(Field::Frequency));
     row(Field::Frequency.name(), frequency.unwrap_or("none".into()))?;
     row("kind", best.kind.name().into())?;

@@ -153,7 +153,8 @@ impl<P: Pair> Branches<P> {
     fn of_bands(&self, number: usize, mut ends: Vec<f64>, starts: &mut Vec<Complex64>) {
         ends.sort_by(f64::total_cmp);
         ends.push(self.frequency(number));
-        let (mut from, mut next) = (0.0, ALWAYS_FOLLOWED);
+        // With the first ones `one_by_one` follows the two next to them.
+        let (mut from, mut next) = (0.0, ALWAYS_FOLLOWED + 2);
         let mut enough = (0..next).any(|j| !self.follow(j, starts));
         for to in ends {
             if self.inside(0.5 * (from + to)) {

@@ -256,8 +256,8 @@ impl Family for General<'_> {
             return Vec::new();
         };
         line.stable_intervals_until(delays.1)
-            .take(MOST_STRETCHES)
             .filter(|interval| interval.to >= delays.0)
+            .take(MOST_STRETCHES)
             .filter_map(|interval| {
                 let bounds = (bound(&line, interval.from), bound(&line, interval.to));
                 Stretch::cut(gain, (interval.from, interval.to), delays, bounds)

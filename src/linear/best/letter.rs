@@ -115,8 +115,8 @@ impl Family for Letter {
         crossings
             .stable_delays()
             .take_while(|interval| interval.from <= delays.1)
-            .take(MOST_STRETCHES)
             .filter(|interval| interval.to >= delays.0)
+            .take(MOST_STRETCHES)
             .filter_map(|interval| {
                 let bounds = (
                     crossings.lower.map(|c| (0, c.branch_at(interval.from))),

@@ -46,11 +46,19 @@ use polish::{polished, unpolished};
 use regions::{Stretches, stable_regions};
 use search::Evaluator;
 
+use crate::model::elementary::power;
+
 /// Regions whose optimum is looked for; the others are counted.
 pub const MOST_REGIONS: usize = 64;
 /// Lines of a region's lattice, and places on each of its stretches.
 const LATTICE_LINES: usize = 24;
 const LATTICE_PLACES: usize = 10;
+/// Places more on stretches that begin at a short delay and go on to long ones, each nearer to the
+/// short end by `CLOSER`.
+const SHORT_PLACES: i32 = 8;
+const CLOSER: f64 = 0.4;
+/// The longest delay of such stretches is this many times the shortest.
+const LONG: f64 = 10.0;
 /// Places of the lattice from which the search goes down.
 const STARTS: usize = 3;
 /// Cells each way of the grid over a box without stable regions.
@@ -146,8 +154,9 @@ pub struct Optimum {
     pub frequencies: Vec<f64>,
     /// What makes it an optimum.
     pub kind: Kind,
-    /// The argument principle confirms that no root lies right of `abscissa` + `margin`: to the
-    /// right of a line a little farther left there are no roots but those of `kind`.
+    /// The argument principle confirms the abscissa: right of a line a little farther left there
+    /// are no roots but those of `kind`, and none right of a line a little farther right. At
+    /// multiple roots these lines are farther away than `margin`.
     pub certified: bool,
     /// What rounding can do to the abscissa: about 1e-15 at simple roots, 1e-7 at double and 1e-4
     /// at triple ones.
@@ -171,9 +180,9 @@ impl Optimum {
 /// A stable region of the box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// The smallest and the largest sampled gain with stable delays in it.
+    /// The smallest and the largest gain at which it was sampled, or its best setting is.
     pub gains: (f64, f64),
-    /// Its shortest and longest stable delay at the sampled gains.
+    /// The shortest and the longest stable delay at these gains.
     pub delays: (f64, f64),
     /// The setting of fastest decay in it.
     pub best: Optimum,
@@ -240,10 +249,12 @@ fn region(
     let gains = hull(&|i| (stretches[i].gain, stretches[i].gain));
     let delays = hull(&|i| (stretches[i].from, stretches[i].to));
     let starts = lattice(stretches, gains, |place| evaluator.abscissa(search, place));
+    let best = lowest(evaluator, search, starts);
+    let with = |(from, to): (f64, f64), place: f64| (from.min(place), to.max(place));
     Region {
-        gains,
-        delays,
-        best: lowest(evaluator, search, starts),
+        gains: with(gains, best.gain),
+        delays: with(delays, best.tau),
+        best,
     }
 }
 
@@ -268,21 +279,30 @@ fn lattice(
         let step = (gain - before).max(after - gain);
         let slope = (middle(after) - middle(before)) / (after - before);
         for stretch in stretches.iter().filter(|s| s.gain == gain) {
-            let frame = Frame {
-                gain: positive(step, gain),
-                slope: if slope.is_finite() { slope } else { 0.0 },
-                tau: positive(
-                    (stretch.to - stretch.from) / LATTICE_PLACES as f64,
-                    stretch.to,
-                ),
-            };
-            for j in 0..=LATTICE_PLACES {
-                let place = stretch.at(j as f64 / LATTICE_PLACES as f64);
+            for (part, apart) in parts(stretch) {
+                let frame = Frame {
+                    gain: positive(step, gain),
+                    slope: if slope.is_finite() { slope } else { 0.0 },
+                    tau: positive(apart * (stretch.to - stretch.from), stretch.to),
+                };
+                let place = stretch.at(part);
                 starts.push((of(place), place, frame));
             }
         }
     }
     starts
+}
+
+/// How far along a stretch its places of the lattice are, from 0 to 1, and how far apart there.
+fn parts(stretch: &Stretch) -> impl Iterator<Item = (f64, f64)> {
+    let apart = 1.0 / LATTICE_PLACES as f64;
+    let evenly = (0..=LATTICE_PLACES).map(move |j| (j as f64 / LATTICE_PLACES as f64, apart));
+    let long = stretch.to > LONG * stretch.from;
+    let short = (1..=SHORT_PLACES).filter(move |_| long).map(move |j| {
+        let part = apart * power(CLOSER, j);
+        (part, part)
+    });
+    evenly.chain(short)
 }
 
 /// Gains of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among
@@ -335,8 +355,12 @@ fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
 /// The lowest place to which descents from the best of `starts` lead.
 fn lowest(evaluator: &mut Evaluator, search: &Search<impl Family>, starts: Vec<Start>) -> Optimum {
     let mut best: Option<Optimum> = None;
-    for (_, place, frame) in far_apart(starts) {
-        let found = optimum_near(evaluator, search, place, &frame);
+    for (abscissa, place, frame) in far_apart(starts) {
+        let mut found = optimum_near(evaluator, search, place, &frame);
+        if found.abscissa > abscissa {
+            // Beside accumulating roots the abscissa may be known here, and not around it.
+            found = unpolished(evaluator, search, (place, abscissa));
+        }
         if best.as_ref().is_none_or(|b| found.abscissa < b.abscissa) {
             best = Some(found);
         }
