@@ -33,7 +33,7 @@ mkdir -p "$files"
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
 
-# The program with libhdf5 in it, in a folder of its own: other builds of this tree may link the system's.
+# The program with libhdf5 in it. Other builds of this tree may link the system's: none may run beside this.
 build() {
     [ -z "${built:-}" ] || return 0
     say "building the program with libhdf5 in it"
@@ -134,6 +134,8 @@ make_deb() {
     build
     debian_texts
     cargo deb --no-build --strip --output "$files/"
+    ! dpkg-deb -f "$files"/slipmap_"$version"-*.deb Depends | grep -q hdf5 ||
+        die "the package asks for a libhdf5 of the system: another build replaced the program"
 }
 
 for package in "${wanted[@]}"; do
