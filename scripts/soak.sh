@@ -45,7 +45,6 @@ while [ $SECONDS -lt $until ]; do
     tests --test crash
     SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
     SLIPMAP_CASES=100 tests --test referee -- --test-threads=2 motions_with_memory
-    SLIPMAP_CASES=300 tests --test referee -- --test-threads=1 velocities_with_memory
     SLIPMAP_CASES=10000 tests --test general_latency_random
     SLIPMAP_CASES=100000 tests --test general_random
     SLIPMAP_CASES=1000 tests --test best_general

@@ -301,11 +301,11 @@ fn critical_velocities_by_chance() {
     holds(&tally, 0.1, 0.2);
 }
 
-/// The same with memory, latency or both in the feedback: the referee takes a third of a minute for
-/// one.
+/// The same with memory, latency or both in the feedback: the referee takes ten seconds for one, and
+/// minutes where delays are long.
 #[test]
 fn critical_velocities_with_memory_and_latency() {
-    let total = tenth_of_cases(3);
+    let total = tenth_of_cases(2);
     let tally = ask("critical velocities with memory", total, |number| {
         let mut chance = Chance::of(seed() ^ 0x5eed, number);
         against::velocity(&random::remembering_problem(&mut chance))

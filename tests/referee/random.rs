@@ -129,15 +129,15 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
 /// A motion whose feedback has memory, latency or both.
 pub(crate) fn remembering(chance: &mut Chance) -> Start {
     let mut start = start(chance);
-    echo(chance, &mut start.setting, 0.05);
+    echo(chance, &mut start.setting);
     start
 }
 
-/// Memory, latency or both. No latency is shorter than `shortest`, in units of √(M/κ).
-fn echo(chance: &mut Chance, setting: &mut Setting, shortest: f64) {
+/// Memory, latency or both.
+fn echo(chance: &mut Chance, setting: &mut Setting) {
     let memory = [1.0, 0.0, 1.0][chance.below(3)] * chance.between(-0.7, 0.85);
     let late = memory == 0.0 || chance.below(2) == 0;
-    let latency = chance.log(shortest, 4.0) * setting.time();
+    let latency = chance.log(0.05, 4.0) * setting.time();
     setting.memory = memory;
     setting.latency = if late { latency } else { 0.0 };
 }
@@ -174,12 +174,10 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
     }
 }
 
-/// The same with memory, latency or both in the feedback. Delays and latencies are not short: the
-/// referee's steps are shorter than they are, and it takes millions for a ramp.
+/// The same with memory, latency or both in the feedback.
 pub(crate) fn remembering_problem(chance: &mut Chance) -> Setting {
     let mut setting = problem(chance);
-    setting.tau = chance.log(0.4, 5.0);
-    echo(chance, &mut setting, 0.3);
+    echo(chance, &mut setting);
     setting
 }
 
