@@ -13,7 +13,7 @@
 //!
 //! Only whole turns come from the zeros r of P and Q, arg = Σ arctan[(ω − Im r)/(σ − Re r)]; the
 //! fraction comes from P and Q themselves. Equations are numbered through the room: (3) to (5) are
-//! in [`line`](super::line), (8) is in [`shifted`](super::shifted).
+//! in [`line`](super::line), (8) is in `shifted`.
 
 use std::f64::consts::{PI, TAU};
 
