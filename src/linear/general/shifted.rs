@@ -8,44 +8,47 @@
 //! (8) is (6) in feedback form, on the imaginary axis divided by 1 − R: nothing is subtracted from
 //! itself. (3) to (5) are in [`line`](super::line), (7) is in [`right_of`](super::right_of).
 
-use std::borrow::Cow;
-
 use super::parts::{Angle, Decay, remembered};
 use super::polynomial::Polynomial;
 use crate::linear::rounded::Rounded;
 
 /// P and Q, or B and A in feedback form, as polynomials in λ − σ.
-#[derive(Debug, Clone)]
-pub(super) struct Shifted<'p> {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shifted {
     /// P, or B.
-    first: Cow<'p, Polynomial>,
+    first: Polynomial,
     /// Q, or A.
-    second: Cow<'p, Polynomial>,
+    second: Polynomial,
     /// R in feedback form.
     memory: Option<f64>,
     on_axis: bool,
     decay: Decay,
 }
 
-impl<'p> Shifted<'p> {
-    /// P and Q, or with the memory R of feedback B and A, in λ − σ.
+impl Shifted {
+    /// The polynomials of P and Q in λ − σ.
     #[inline]
-    pub(super) fn new(
-        [first, second]: [&'p Polynomial; 2],
-        memory: Option<f64>,
+    pub(super) fn direct([p, q]: [&Polynomial; 2], line: f64, decay: Decay) -> Self {
+        Self {
+            first: p.shifted(line),
+            second: q.shifted(line),
+            memory: None,
+            on_axis: line == 0.0,
+            decay,
+        }
+    }
+
+    /// The polynomials of B and A in λ − σ, with the memory R.
+    #[inline]
+    pub(super) fn of_feedback(
+        [open, gain]: [&Polynomial; 2],
+        memory: f64,
         line: f64,
         decay: Decay,
     ) -> Self {
-        let shifted = |p: &'p Polynomial| match line {
-            0.0 => Cow::Borrowed(p),
-            _ => Cow::Owned(p.shifted(line)),
-        };
         Self {
-            first: shifted(first),
-            second: shifted(second),
-            memory,
-            on_axis: line == 0.0,
-            decay,
+            memory: Some(memory),
+            ..Self::direct([open, gain], line, decay)
         }
     }
 
@@ -93,7 +96,7 @@ impl<'p> Shifted<'p> {
 
     fn by_squares(&self) -> Polynomial {
         let Decay { kappa, lost } = self.decay;
-        let (first, second) = (&*self.first, &*self.second);
+        let (first, second) = (&self.first, &self.second);
         let own = first.square();
         let Some(memory) = self.memory else {
             let echo = second.square();

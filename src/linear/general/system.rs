@@ -221,19 +221,18 @@ impl System {
 
     /// P and Q on the line Re λ = `line`.
     #[inline]
-    pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted<'_> {
-        let (polynomials, memory) = match &self.feedback {
+    pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
+        match &self.feedback {
             Some(Feedback {
                 open, gain, memory, ..
-            }) => ([open, gain], Some(*memory)),
-            None => ([&self.p, &self.q], None),
-        };
-        Shifted::new(polynomials, memory, line, decay)
+            }) => Shifted::of_feedback([open, gain], *memory, line, decay),
+            None => Shifted::direct([&self.p, &self.q], line, decay),
+        }
     }
 
     /// P and Q on the imaginary axis.
     #[inline]
-    pub(super) fn on_axis(&self) -> Shifted<'_> {
+    pub(super) fn on_axis(&self) -> Shifted {
         self.on_line(0.0, Decay::NONE)
     }
 
