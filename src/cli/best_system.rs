@@ -287,7 +287,7 @@ impl Asked {
         row(&self.name, short(best.gain))?;
         row("tau", short(best.tau))?;
         row("abscissa", abscissa_of(best, ""))?;
-        row("frequency", frequency_of(best).unwrap_or("none".into()))?;
+        row("frequency", frequency_of(best, ""))?;
         row("kind", best.kind.name().into())?;
         let certified = if best.certified { "yes" } else { "no" };
         row("certified", certified.into())?;

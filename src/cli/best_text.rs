@@ -34,10 +34,13 @@ pub(super) fn abscissa_of(best: &Optimum, unit: &str) -> String {
     }
 }
 
-/// The lowest frequency of an optimum; none where its roots have none, because they accumulate.
-pub(super) fn frequency_of(best: &Optimum) -> Option<String> {
-    let told = !best.frequencies.is_empty();
-    told.then(|| short(best.frequency()))
+/// The lowest frequency of an optimum in words; "none" where its roots have none, because they
+/// accumulate.
+pub(super) fn frequency_of(best: &Optimum, unit: &str) -> String {
+    match best.frequencies.is_empty() {
+        true => "none".into(),
+        false => format!("{}{unit}", short(best.frequency())),
+    }
 }
 
 pub(super) fn print(
@@ -74,8 +77,10 @@ pub(super) fn print(
         Field::Abscissa.name(),
         abscissa_of(best, &unit(Field::Abscissa)),
     )?;
-    let frequency = frequency_of(best).map(|f| f + &unit(Field::Frequency));
-    row(Field::Frequency.name(), frequency.unwrap_or("none".into()))?;
+    row(
+        Field::Frequency.name(),
+        frequency_of(best, &unit(Field::Frequency)),
+    )?;
     row("kind", best.kind.name().into())?;
     row(
         "certified",
@@ -229,7 +234,7 @@ pub(super) fn print_regions<'o>(
             &short(best.gain),
             &short(best.tau),
             &time,
-            &frequency_of(best).unwrap_or("none".into()),
+            &frequency_of(best, ""),
             if best.certified { "yes" } else { "no" },
             best.kind.name(),
         ])?;

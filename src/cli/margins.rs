@@ -6,7 +6,7 @@ use slipmap::explore::margins::{Margin, Margins, StabilityBox};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Stability, Wanted};
 use slipmap::model::Shown;
-use slipmap::report::numbers::{rounded, unit_behind};
+use slipmap::report::numbers::{counted, rounded, unit_behind};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
 
@@ -84,11 +84,7 @@ pub(super) fn violations(stability: &Stability) -> Option<u64> {
 fn without_margins(margins: &Margins, violations: Option<u64>, rate: &str) -> String {
     let required = margins.required_decay;
     let decay = Shown(required);
-    let counted = |n: u64| match n {
-        1 => "1 root".to_owned(),
-        n => format!("{n} roots"),
-    };
-    let why = match violations.map(counted) {
+    let why = match violations.map(|n| counted(n, "root")) {
         Some(roots) if required == 0.0 => format!("unstable ({roots})"),
         Some(roots) => {
             format!("not left of -{decay}{rate} with all its roots ({roots} right of it)")

@@ -87,6 +87,7 @@ pub(super) fn starting_values(
         tau,
         span: equation.memory_span(tau),
         line,
+        kappa: exp(-line * tau),
     };
     let number = branches.number(radius).ceil() + 2.0;
     let number = (number as usize).min(MOST_BRANCHES);
@@ -111,6 +112,8 @@ struct Branches<P> {
     /// How far back in time the equation reaches.
     span: f64,
     line: f64,
+    /// κ = e^(−στ) on the line σ.
+    kappa: f64,
 }
 
 impl<P: Pair> Branches<P> {
@@ -125,9 +128,8 @@ impl<P: Pair> Branches<P> {
 
     /// Whether feedback is the larger term on the line.
     fn inside(&self, omega: f64) -> bool {
-        let kappa = exp(-self.line * self.tau);
         let [p, _, q, _] = self.pair.at(Complex64::new(self.line, omega));
-        p.norm_sqr() <= kappa * kappa * q.norm_sqr()
+        p.norm_sqr() <= self.kappa * self.kappa * q.norm_sqr()
     }
 
     /// Follows branch `j`; false where there are starts enough.
@@ -137,7 +139,7 @@ impl<P: Pair> Branches<P> {
         starts.len() < MOST_STARTS
     }
 
-    /// All of the first `number` that are wanted, each looked at.
+    /// Follows the branches that are wanted among the first `number`, looking at each.
     fn one_by_one(&self, number: usize, starts: &mut Vec<Complex64>) {
         let (mut before, mut here) = (true, true);
         for j in 0..number {
@@ -149,7 +151,8 @@ impl<P: Pair> Branches<P> {
         }
     }
 
-    /// The same where `ends`, the frequencies at which both terms are equal, are known.
+    /// Follows the branches that are wanted among the first `number`. `ends` are the frequencies at
+    /// which both terms are equally large; between two of them all branches are wanted, or none.
     fn of_bands(&self, number: usize, mut ends: Vec<f64>, starts: &mut Vec<Complex64>) {
         ends.sort_by(f64::total_cmp);
         ends.push(self.frequency(number));

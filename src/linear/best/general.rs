@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::regions::{Bound, MOST_STRETCHES, Stretch};
-use super::search::{ByParameters, Family, Place};
+use super::search::{ByParameters, Family, Place, beside_essential};
 use crate::linear::crossing::Direction;
 use crate::linear::equation::{Equation, Pair};
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
@@ -16,9 +16,6 @@ use crate::model::elementary::norm;
 const DIFFERENCE: f64 = 1e-3;
 /// The least scale of a gain, over the width of what is searched.
 const LEAST_SCALE: f64 = 1e-2;
-/// How near, relative, the line right of which nothing lies has to be to the one at which roots
-/// accumulate. Where ρ is nearly 1 or the delay nearly 0 it is too far to say anything.
-const CLOSE: f64 = 1e-3;
 /// Delays at which a line without a closed form is counted, and halvings of its ends.
 const SAMPLES: u32 = 256;
 const MOST_HALVINGS: u32 = 60;
@@ -218,7 +215,7 @@ impl Family for General<'_> {
         // It may be that no root lies right of where they accumulate. This is asked last: so near
         // to that line a count takes long.
         let essential = system.essential_abscissa(tau);
-        let close = |line: f64| line - essential <= CLOSE * essential.abs();
+        let close = |line: f64| beside_essential(line, essential);
         let close = beside_accumulation(system, tau).is_some_and(close);
         if close && nothing_beyond_accumulation(&counter, tau).is_some() {
             essential

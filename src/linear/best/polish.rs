@@ -3,7 +3,7 @@
 
 use super::condition::{Condition, Followed};
 use super::descend::Frame;
-use super::search::{Evaluator, Family, Place, Search};
+use super::search::{Evaluator, Family, Place, Search, beside_essential};
 use super::{Kind, Optimum};
 use crate::linear::equation::Equation;
 use crate::linear::newton::Root;
@@ -22,8 +22,6 @@ const CANDIDATES: u64 = 12;
 /// the one before, from four times what rounding can do to the abscissa. Near a multiple root the
 /// argument principle needs a line farther away than the root is blurred.
 const DISTANCES: i32 = 9;
-/// How near, relative, to the line at which roots accumulate an abscissa is that line.
-const BESIDE_ESSENTIAL: f64 = 1e-3;
 /// What is left undecided of an abscissa that the descent alone has found.
 const DESCENT_ERROR: f64 = 1e-8;
 
@@ -54,7 +52,7 @@ pub(super) fn unpolished<F: Family>(
     let margin = decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0));
     let accumulating = search.family.setting(place).is_some_and(|setting| {
         let essential = F::equation(&setting).essential_abscissa(place.tau);
-        abscissa - essential <= BESIDE_ESSENTIAL * essential.abs()
+        beside_essential(abscissa, essential)
     });
     Optimum {
         gain: place.gain,

@@ -32,10 +32,13 @@ pub trait Family {
     /// The spectral abscissa at a place, or its supremum where roots accumulate; infinite where it
     /// is not known.
     fn abscissa(&self, finder: &mut RootFinder, place: Place) -> f64 {
-        let setting = self.setting(place);
-        setting.map_or(f64::INFINITY, |setting| {
-            rightmost_abscissa(Self::equation(&setting), finder, place.tau)
-        })
+        let Some(setting) = self.setting(place) else {
+            return f64::INFINITY;
+        };
+        let equation = Self::equation(&setting);
+        let roots = finder.rightmost(equation, place.tau, 1, f64::NEG_INFINITY);
+        let first = roots.ok().and_then(|roots| roots.first());
+        first.map_or(f64::INFINITY, |root| root.lambda.re)
     }
 
     /// The gains at which the stable delays may begin or end all at once. In no order, not all of
@@ -47,15 +50,14 @@ pub trait Family {
     fn stretches(&self, gain: f64, delays: (f64, f64)) -> Vec<Stretch>;
 }
 
-/// The real part of the rightmost root; infinite where it was not found.
-pub(super) fn rightmost_abscissa(
-    equation: impl Equation,
-    finder: &mut RootFinder,
-    tau: f64,
-) -> f64 {
-    let roots = finder.rightmost(equation, tau, 1, f64::NEG_INFINITY);
-    let first = roots.ok().and_then(|roots| roots.first());
-    first.map_or(f64::INFINITY, |r| r.lambda.re)
+/// How near, relative, to the line at which roots accumulate a line is taken for it. Where ρ is
+/// nearly 1 or the delay nearly 0, one right of which nothing lies may be too far to say anything.
+const CLOSE: f64 = 1e-3;
+
+/// Whether the line Re λ = `line` is next to the one at which roots accumulate; never where they do
+/// not accumulate.
+pub(super) fn beside_essential(line: f64, essential: f64) -> bool {
+    essential.is_finite() && line - essential <= CLOSE * essential.abs()
 }
 
 /// Derivatives of D and D′ with respect to the gain and the delay, at fixed λ.
@@ -147,5 +149,18 @@ impl Evaluator {
         self.finder
             .rightmost(F::equation(&setting), place.tau, wanted, f64::NEG_INFINITY)
             .unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_accumulation_nothing_is_beside_it() {
+        assert!(beside_essential(-0.257_1, -0.257_2));
+        assert!(!beside_essential(-0.2, -0.257_2));
+        assert!(!beside_essential(-0.2, f64::NEG_INFINITY));
+        assert!(!beside_essential(f64::INFINITY, -0.257_2));
     }
 }

@@ -15,7 +15,7 @@ impl Setting {
         remark(self.law()?, (v0.name(), &[self.get(v0)]), units)
     }
 
-    /// The same of v_c.
+    /// A remark on a critical velocity beyond the points of a measured friction law.
     #[must_use]
     pub fn vc_beyond_curve(&self, vc: f64, units: &Units) -> Option<String> {
         remark(self.law()?, ("v_c", &[vc]), units)
