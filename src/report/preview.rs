@@ -15,14 +15,16 @@ const COLUMNS: std::ops::RangeInclusive<usize> = 10..=160;
 const MOST_CELLS: usize = 640;
 
 /// Colours of the 256-colour palette: stable, 2, 4 and more unstable roots, other kinds or no
-/// value, not known, not computed.
-const COLOURS: [u8; 7] = [37, 230, 180, 136, 250, 255, 16];
+/// value, not known, not computed; 1, 3 and 5 unstable roots.
+const COLOURS: [u8; 10] = [37, 230, 180, 136, 250, 255, 16, 189, 140, 97];
 /// The characters of a preview without colours.
-const SHADES: [char; 7] = ['█', ' ', '░', '▒', '?', '/', '.'];
+const SHADES: [char; 10] = ['█', ' ', '░', '▒', '?', '/', '.', '-', '+', '#'];
 /// Place in both lists from which on cells have no value to show.
 const OTHERS: usize = 4;
 const UNKNOWN: usize = 5;
 const NOT_COMPUTED: usize = 6;
+/// Place in both lists of the first odd number of roots.
+const ODD: usize = 7;
 /// The colour of the hatching.
 const HATCH: u8 = 240;
 
@@ -64,7 +66,9 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
         shaded(&known, columns)
     };
     let there = |of: fn(&Gap) -> bool| known.gaps.iter().flatten().any(of);
+    let count = |n: usize| known.plane.cells.contains(&(n as f64));
     let captions = Captions {
+        odd: [1, 3, 5].map(count),
         unknown: there(|gap| gap.is_unknown()),
         not_computed: there(|gap| *gap == Gap::NotComputed),
         ..captions
@@ -79,7 +83,8 @@ fn as_count(field: Field, value: f64) -> f64 {
         return if value <= 3.0 { 2.0 * value } else { f64::NAN };
     }
     match field.tells_stable(value) {
-        Some(stable) if !value.is_nan() => f64::from(u8::from(!stable)),
+        Some(true) if !value.is_nan() => 0.0,
+        Some(false) if !value.is_nan() => 2.0,
         _ => f64::NAN,
     }
 }
@@ -108,11 +113,17 @@ fn kind(known: &Known, across: f64, up: f64) -> usize {
         _ => {}
     }
     match plane.cells.get(cell) {
-        Some(0.0) => 0,
-        Some(&n) if n <= 2.0 => 1,
-        Some(&n) if n <= 4.0 => 2,
-        Some(n) if n.is_finite() => 3,
+        Some(n) if n.is_finite() => of_count(*n as usize),
         _ => OTHERS,
+    }
+}
+
+/// The kind of a number of unstable roots.
+fn of_count(n: usize) -> usize {
+    match n {
+        6.. => 3,
+        n if n.is_multiple_of(2) => n / 2,
+        n => ODD + n / 2,
     }
 }
 
@@ -166,6 +177,8 @@ struct Captions {
     margin: usize,
     /// The meanings of the first shades.
     kinds: &'static [&'static str],
+    /// Whether 1, 3 and 5 unstable roots occur.
+    odd: [bool; 3],
     /// Whether some cells are not known, or not computed.
     unknown: bool,
     not_computed: bool,
@@ -191,6 +204,7 @@ impl Captions {
             margin: margin.into_iter().max().unwrap_or(0),
             top,
             bottom,
+            odd: [false; 3],
             unknown: false,
             not_computed: false,
             kinds: match field.storage() {
@@ -222,7 +236,14 @@ impl Captions {
     }
 
     fn key(&self, colour: bool) -> String {
-        let mut names: Vec<(usize, &str)> = self.kinds.iter().copied().enumerate().collect();
+        let mut names: Vec<(usize, &str)> = Vec::new();
+        for (kind, name) in self.kinds.iter().enumerate() {
+            names.push((kind, name));
+            // An odd number stands between its neighbours.
+            if self.odd.get(kind) == Some(&true) {
+                names.push((ODD + kind, ["1", "3", "5"][kind]));
+            }
+        }
         names.extend(self.unknown.then_some((UNKNOWN, "not known")));
         names.extend(self.not_computed.then_some((NOT_COMPUTED, "not computed")));
         let entry = |(place, name): (usize, &str)| match (colour, COLOURS[place]) {

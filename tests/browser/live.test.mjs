@@ -819,6 +819,33 @@ test("kinds have colours of their own, and the legend tells those in view", asyn
   assert.deepEqual(found[1], ["grazing", "period-doubling"]);
 });
 
+test("each number of unstable roots has a colour and an entry of its own", async () => {
+  const page = await openPage(browser, server.link);
+  const [colours, words, names] = await page.evaluate(async () => {
+    const [{ coloursOf }, { tellLegend }] = await Promise.all([
+      import("./colours.js"),
+      import("./legend.js"),
+    ]);
+    const field = window.slipmap.catalogue.fields.find(({ name }) => name === "n_unstable");
+    const cells = [1, 3, 2, 2, 65535, 9, 0];
+    const colours = coloursOf(field, cells);
+    const list = document.createElement("ul");
+    tellLegend(list, { colours, field, cells, bits: [0, 0, 0, 0, 0, 0, 4], marks: [] });
+    const pixels = Array.from({ length: 9 }, (_, n) => colours.pixel(n));
+    const words = [...list.children].map((item) => item.textContent);
+    return [pixels, words, [0, 1, 12, 65535].map((n) => colours.name(n))];
+  });
+  assert.equal(new Set(colours).size, 9);
+  assert.deepEqual(words, [
+    "1 unstable root",
+    "2 unstable roots",
+    "3 unstable roots",
+    "8 or more unstable roots",
+    "no value",
+  ]);
+  assert.deepEqual(names, ["stable", "1 unstable root", "12 unstable roots", "no value"]);
+});
+
 test("where a map has no v0, only the critical velocity is told", async () => {
   const page = await openPage(browser, server.link);
   await show(page, "#v=1&law=weakening");

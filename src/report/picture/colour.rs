@@ -47,6 +47,15 @@ pub(super) const UNSTABLE: [Rgb; 4] = [
     Rgb(0xbf, 0x81, 0x2d),
     Rgb(0x7a, 0x46, 0x08),
 ];
+/// Cells with 1, 3, 5 and 7 unstable roots.
+const ODD: [Rgb; 4] = [
+    Rgb(0xd3, 0xc8, 0xf0),
+    Rgb(0xa3, 0x8f, 0xd6),
+    Rgb(0x75, 0x58, 0xb0),
+    Rgb(0x40, 0x28, 0x6e),
+];
+/// The largest class of numbers of unstable roots. Larger numbers share its colour.
+pub(super) const LAST_COUNT: usize = 2 * UNSTABLE.len();
 
 /// Outcomes: slides, sticks and slips, oscillates, lifts off, diverges, undecided, none. Then the
 /// ends of stick-slip: grazing, fold, period doubling, irregular, persists, never, lost. The
@@ -120,12 +129,20 @@ pub(super) fn of_line(i: usize, n: usize) -> Rgb {
     ColourMap::Viridis.at(LINES * part)
 }
 
-/// The colour of a number of unstable roots.
+/// The class of a number of unstable roots: the number itself, up to [`LAST_COUNT`].
+pub(super) fn class_of_count(n: f64) -> usize {
+    (n as usize).min(LAST_COUNT)
+}
+
+/// The colour of a number of unstable roots, one for each class.
 pub(super) fn of_count(n: f64) -> Rgb {
-    match n {
-        n if n.is_nan() => NO_VALUE,
-        n if n < 1.0 => STABLE,
-        n => UNSTABLE[((n / 2.0).ceil() as usize).clamp(1, UNSTABLE.len()) - 1],
+    if n.is_nan() {
+        return NO_VALUE;
+    }
+    match class_of_count(n) {
+        0 => STABLE,
+        class if class.is_multiple_of(2) => UNSTABLE[class / 2 - 1],
+        class => ODD[class / 2],
     }
 }
 
@@ -220,8 +237,11 @@ mod tests {
 
     #[test]
     fn counts_grow_darker_and_stable_differs() {
-        let counts = [2.0, 4.0, 6.0, 8.0].map(of_count);
-        assert!(counts.windows(2).all(|w| lightness(w[0]) > lightness(w[1])));
+        for counts in [[2.0, 4.0, 6.0, 8.0], [1.0, 3.0, 5.0, 7.0]] {
+            let colours = counts.map(of_count);
+            let darker = |w: &[Rgb]| lightness(w[0]) > lightness(w[1]);
+            assert!(colours.windows(2).all(darker), "{counts:?}");
+        }
         assert_eq!(of_count(120.0), of_count(8.0));
         assert_eq!(of_count(0.0), STABLE);
         assert_eq!(of_count(f64::NAN), NO_VALUE);

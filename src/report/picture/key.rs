@@ -1,7 +1,9 @@
 //! The key of a heat map: the colour of every value of a field, and the bar or list that explains
 //! it.
 
-use super::colour::{self, INK, Rgb, STABLE, UNSTABLE};
+use std::collections::BTreeSet;
+
+use super::colour::{self, INK, LAST_COUNT, Rgb};
 use super::error::PictureError;
 use super::legend::{Bar, Legend, Swatch};
 use super::options::PictureOptions;
@@ -117,25 +119,23 @@ fn heading(field: Field, unit: &str) -> Vec<Rich> {
     lines
 }
 
+/// The numbers of unstable roots that occur.
 fn counts(values: &[f64]) -> Legend {
-    let finite = values.iter().copied().filter(|v| v.is_finite());
-    let most = finite.fold(0.0, f64::max);
-    let mut entries = vec![(Swatch::Box(STABLE), Rich::plain("0, stable"))];
-    for (i, colour) in UNSTABLE.into_iter().enumerate() {
-        let n = 2 * (i + 1);
-        let open = i + 1 == UNSTABLE.len() && most > n as f64;
-        let text = if open {
-            format!("{n} or more")
-        } else {
-            n.to_string()
-        };
-        if n as f64 <= most {
-            entries.push((Swatch::Box(colour), Rich::plain(&text)));
-        }
-    }
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let there: BTreeSet<usize> = finite().map(colour::class_of_count).collect();
+    let open = finite().any(|v| v > LAST_COUNT as f64);
+    let name = |class: usize| match class {
+        0 => "0, stable".to_owned(),
+        LAST_COUNT if open => format!("{class} or more"),
+        _ => class.to_string(),
+    };
+    let entry = |class: usize| {
+        let swatch = Swatch::Box(colour::of_count(class as f64));
+        (swatch, Rich::plain(&name(class)))
+    };
     Legend {
         heading: vec![Rich::plain("unstable roots")],
-        entries,
+        entries: there.into_iter().map(entry).collect(),
     }
 }
 
@@ -226,8 +226,12 @@ mod tests {
     #[test]
     fn the_legend_lists_what_is_there() {
         let key = of(Field::NUnstable, &[0.0, 4.0, f64::NAN], true);
-        let expected = ["0, stable", "2", "4", "no value", "boundary"];
+        let expected = ["0, stable", "4", "no value", "boundary"];
         assert_eq!(texts(key), expected.map(Rich::plain));
+        let key = of(Field::NUnstable, &[3.0, 1.0, 2.0, 9.0, 3.0], false);
+        assert_eq!(texts(key), ["1", "2", "3", "8 or more"].map(Rich::plain));
+        let key = of(Field::NUnstable, &[8.0, 7.0], false);
+        assert_eq!(texts(key), ["7", "8"].map(Rich::plain));
         let cells = [-0.1, 0.9, f64::NEG_INFINITY];
         let key = of(Field::Abscissa, &cells, false);
         assert_eq!(texts(key), ["above 0.45", "−∞"].map(Rich::plain));
@@ -262,7 +266,7 @@ mod tests {
             let cells = match field.storage() {
                 Storage::Real => cells.clone(),
                 Storage::Kind | Storage::Few => numbers(),
-                Storage::Count => numbers().into_iter().map(|n| 2.0 * n).collect(),
+                Storage::Count => (0..20).map(f64::from).collect(),
             };
             let mut known = plane(&cells);
             for gap in Gap::ALL.into_iter().filter(|gap| !gap.is_unknown()) {

@@ -9,6 +9,7 @@ use super::scale::Scale;
 use super::scene::Scene;
 use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, number, suffix};
+use super::value_scale;
 use crate::explore::along_delay::AlongDelay;
 use crate::explore::point::Point;
 use crate::sweep::Parameter;
@@ -196,8 +197,9 @@ fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
     let u = scene.unit();
     let most = along.steps.iter().map(|step| step.2).max().unwrap_or(0);
     let high = (most as f64).max(2.0);
+    let step = value_scale::smallest_step(along.steps.iter().map(|step| step.2 as f64));
     let row = Row {
-        scale: Scale::linear(-0.06 * high, 1.1 * high).with_smallest_step(2.0),
+        scale: Scale::linear(-0.06 * high, 1.1 * high).with_smallest_step(step),
         title: Rich::plain("number of unstable roots"),
     };
     let unit = suffix(&picture.units.time(), "  (", ")");

@@ -328,3 +328,37 @@ fn what_cannot_be_drawn_is_refused_and_leaves_nothing() {
     let error = cell.draw("x.png", &default).unwrap_err();
     assert!(matches!(error, PictureError::NothingToDraw));
 }
+
+/// Counts that differ by one have different colours, and each has an entry of its own.
+#[test]
+fn odd_counts_are_not_even_ones() {
+    let case = Case::new(
+        "system = \"pd\"\n[axes]\nk_p = { from = -3, to = 4, points = 58 }\nk_d = { from = -2, \
+         to = 8, points = 41 }\n[fixed]\ntau = 0.3\nstiffness = 1\ndamping = 0.1\n",
+    );
+    let view = View::new(&case.map, &[]).unwrap();
+    let plane = case
+        .map
+        .plane(Field::NUnstable, &[0, 0], (view.y.unwrap(), view.x), 600);
+    let plane = plane.unwrap();
+    // D(0) = stiffness + k_p has the sign of (−1)^n: real roots pass 0 one by one.
+    let width = plane.columns.len();
+    for (i, n) in plane
+        .cells
+        .iter()
+        .enumerate()
+        .filter(|(_, n)| n.is_finite())
+    {
+        let at_zero = 1.0 + plane.columns[i % width];
+        assert_eq!(n % 2.0 == 1.0, at_zero < 0.0, "{at_zero} {n}");
+    }
+    let occur: HashSet<usize> = plane.cells.iter().map(|n| *n as usize).collect();
+    assert!(occur.contains(&1) && occur.contains(&3), "{occur:?}");
+    let drawn = case.draw("map.png", &of_kind(PictureKind::Heat)).unwrap();
+    let pixels = decoded(&drawn).2;
+    let seen: HashSet<&[u8]> = pixels.chunks_exact(3).collect();
+    for n in 0..=colour::LAST_COUNT {
+        let colour::Rgb(r, g, b) = colour::of_count(n as f64);
+        assert_eq!(seen.contains(&[r, g, b][..]), occur.contains(&n), "{n}");
+    }
+}

@@ -14,8 +14,8 @@ use palette::convert::FromColorUnclamped;
 use palette::{Lab, LinSrgb, Srgb};
 
 use super::colour::{
-    self, ABOVE, BELOW, HATCH, INFINITE, INK, LIFTS_OFF, MINUS_INFINITE, NO_VALUE, PAPER, PERSISTS,
-    Rgb, STABLE, UNKNOWN, UNSTABLE, ZERO,
+    self, ABOVE, BELOW, HATCH, INFINITE, INK, LAST_COUNT, LIFTS_OFF, MINUS_INFINITE, NO_VALUE,
+    PAPER, PERSISTS, Rgb, STABLE, UNKNOWN, UNSTABLE, ZERO,
 };
 use super::gradient::ColourMap;
 use crate::sweep::Field;
@@ -198,12 +198,11 @@ fn values_with_two_sides() {
 
 #[test]
 fn counts_and_kinds() {
-    let counts = ["0", "2", "4", "6", "8"]
+    let counts = ["0", "1", "2", "3", "4", "5", "6", "7", "8"]
         .into_iter()
-        .zip((0..5).map(|i| 2.0 * f64::from(i)));
-    let counts: Vec<Named> = counts
-        .map(|(name, n)| (name, colour::of_count(n)))
-        .collect();
+        .zip((0..=LAST_COUNT).map(|n| colour::of_count(n as f64)));
+    let counts: Vec<Named> = counts.collect();
+    assert_eq!(counts.len(), LAST_COUNT + 1);
     none(&alike(&counts), "counts");
     let kinds = |field: Field, numbers: &[usize]| -> Vec<Named> {
         let names = field.kinds().unwrap();

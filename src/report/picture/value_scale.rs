@@ -70,8 +70,20 @@ pub(super) fn by_default(field: Field, values: &[f64]) -> Scale {
     }
     if field.storage() == Storage::Count {
         let high = f64::max(high, 2.0);
-        return Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(2.0);
+        let step = smallest_step(finite());
+        return Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(step);
     }
     let span = if high > low { high - low } else { 1.0 };
     Scale::linear(low - 0.05 * span, high + 0.05 * span)
+}
+
+/// The smallest step between ticks on a scale of these numbers of roots, which are even where roots
+/// cross the axis in pairs only.
+pub(super) fn smallest_step(counts: impl IntoIterator<Item = f64>) -> f64 {
+    let odd = |n: f64| n % 2.0 != 0.0;
+    if counts.into_iter().any(odd) {
+        1.0
+    } else {
+        2.0
+    }
 }

@@ -4,10 +4,25 @@ import { told } from "./scale.js";
 
 const STABLE = "#5fb9ae";
 const NO_VALUE = "#b9b9b9";
-const COUNTS = [STABLE, "#f6e8c3", "#dfc27d", "#bf812d", "#7a4608"];
+/** Numbers of unstable roots, from 0 on; larger ones share the last colour. */
+const COUNTS = [
+  STABLE,
+  "#d3c8f0",
+  "#f6e8c3",
+  "#a38fd6",
+  "#dfc27d",
+  "#7558b0",
+  "#bf812d",
+  "#40286e",
+  "#7a4608",
+];
+const LAST_COUNT = COUNTS.length - 1;
 /** What stands for no count, and for no small one. */
 const [NO_COUNT, NO_FEW] = [65535, 255];
-const COUNT_NAMES = ["stable", "1 or 2 unstable roots", "3 or 4", "5 or 6", "7 or more"];
+const counted = (n) => (n === 0 ? "stable" : `${n} unstable root${n === 1 ? "" : "s"}`);
+const COUNT_NAMES = COUNTS.map((_, n) =>
+  n === LAST_COUNT ? `${n} or more unstable roots` : counted(n),
+);
 /**
  * Fates of motions, ends of stick-slip, working velocities, by name. Those of one field are all told
  * apart, by the colour-blind too.
@@ -88,8 +103,10 @@ class Classes {
     return this.ints[this.classOf(value)] ?? this.none;
   }
 
+  /** The name of a value: of its class, where it has none of its own. */
   name(value) {
-    return this.names[this.classOf(value)] ?? "no value";
+    const name = this.names[this.classOf(value)];
+    return name === undefined ? "no value" : (this.own?.(value) ?? name);
   }
 
   /** What the colours mean: {colour, text} each. */
@@ -176,8 +193,8 @@ function aboutZero(values, stable, words) {
  */
 export function coloursOf(field, values) {
   if (field.name === "n_unstable") {
-    const classOf = (n) => (n === NO_COUNT ? NaN : Math.min(4, Math.ceil(n / 2)));
-    return new Classes(COUNT_NAMES, COUNTS, classOf);
+    const classOf = (n) => (n === NO_COUNT ? NaN : Math.min(LAST_COUNT, n));
+    return Object.assign(new Classes(COUNT_NAMES, COUNTS, classOf), { own: counted });
   }
   if (field.kinds) {
     const colours = field.kinds.map((kind, i) => KINDS[kind] ?? FEW[i % FEW.length]);

@@ -17,14 +17,18 @@ export function tellLegend(list, plane) {
   list.replaceChildren(...items, ...marks);
 }
 
-/** What the colours of a plane mean; of many kinds, those that are to be seen. */
+/** What the colours of a plane mean; of many classes, those that are to be seen. */
 function meanings(plane) {
-  const { colours, field, cells } = plane;
+  const { colours, cells } = plane;
   const { legend } = colours;
-  if (!field.kinds) return legend;
+  if (!colours.classOf) return legend;
   const seen = new Set();
+  let last = null;
   for (let n = 0; n < cells.length; n++) {
-    if (!lacking(plane, n)) seen.add(colours.classOf(valueOf(plane, n)));
+    if (lacking(plane, n)) continue;
+    const value = valueOf(plane, n);
+    if (!Object.is(value, last)) seen.add(colours.classOf(value));
+    last = value;
   }
   const none = seen.has(NaN) ? [{ colour: colours.noValue, text: "no value" }] : [];
   return [...legend.filter((_, kind) => seen.has(kind)), ...none];
