@@ -60,6 +60,64 @@ fn a_picture_of_something_else_is_not_replaced() {
     );
 }
 
+/// Enough cells for several tiles.
+const TILES: &str = "fields = [\"abscissa\"]\n[axes]\nalpha_v = { from = -1, to = 0, points = 200 }\n\
+                     tau = { from = 0.5, to = 6, points = 200 }\n[fixed]\nmu_prime = -0.3\n";
+
+/// Computes one shard of two.
+fn half(folder: &Folder) {
+    let args = ["run", "t.toml", "--shard", "1/2"];
+    expect(&folder.run(&args), 0, "shard 1 of 2 is complete");
+}
+
+/// Completes the map.
+fn finish(folder: &Folder) -> std::process::Output {
+    let args = ["run", "t.toml", "--shard", "2/2"];
+    expect(&folder.run(&args), 0, "shard 2 of 2 is complete");
+    folder.run(&["merge", "t.h5"])
+}
+
+/// A picture of what is computed so far makes way for that of the complete map.
+#[test]
+fn the_final_picture_replaces_one_of_the_unfinished_map() {
+    let folder = Folder::with(&[("t.toml", TILES)]);
+    half(&folder);
+    let plotted = folder.run(&["plot", "t.h5"]);
+    expect(&plotted, 0, "t.png");
+    expect(&plotted, 0, "t.h5 is not complete");
+    let before = bytes(&folder, "t.png");
+    let plotted = folder.run(&["plot", "t.h5"]);
+    expect(&plotted, 0, "t.png");
+    assert_eq!(bytes(&folder, "t.png"), before, "again the same");
+    let finished = finish(&folder);
+    expect(&finished, 0, "t.png");
+    assert!(!err(&finished).contains("no picture"), "{}", err(&finished));
+    let complete = bytes(&folder, "t.png");
+    assert_ne!(complete, before);
+    std::fs::remove_file(folder.path().join("t.png")).unwrap();
+    expect(&folder.run(&["plot", "t.h5"]), 0, "t.png");
+    assert_eq!(bytes(&folder, "t.png"), complete);
+}
+
+/// A file that slipmap did not draw of this map stays.
+#[test]
+fn work_of_others_is_not_replaced_by_a_finished_run() {
+    let folder = Folder::with(&[("t.toml", TILES)]);
+    half(&folder);
+    std::fs::write(folder.path().join("t.png"), "mine").unwrap();
+    expect(
+        &folder.run(&["plot", "t.h5"]),
+        2,
+        "t.png is there and not by slipmap",
+    );
+    expect(
+        &finish(&folder),
+        0,
+        "no picture: t.png is there and not by slipmap",
+    );
+    assert_eq!(text(&folder, "t.png"), "mine");
+}
+
 /// How a picture looks does not make it another one.
 #[test]
 fn the_same_field_is_drawn_again_in_its_place() {

@@ -71,7 +71,8 @@ fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile
     let map = MapFile::open(&file);
     // The file stays open after its name is removed.
     std::fs::remove_file(&file)?;
-    Ok(map?)
+    // A picture of it is one of the map that it becomes, and makes way for that one's.
+    Ok(map?.known_as(path))
 }
 
 /// Reports how much of a map is computed.

@@ -125,6 +125,14 @@ impl MapFile {
         }
     }
 
+    /// The map under another name, in messages and pictures: for a file that is one of it for a
+    /// moment only.
+    #[must_use]
+    pub fn known_as(mut self, path: &Path) -> Self {
+        path.clone_into(&mut self.path);
+        self
+    }
+
     /// Where the map is.
     #[must_use]
     pub fn path(&self) -> &Path {
