@@ -7,6 +7,7 @@ mod letter_system;
 use std::f64::consts::TAU;
 
 use letter_system::letter;
+use num_complex::Complex64;
 use slipmap::linear::Crossings;
 use slipmap::linear::curves::{
     CurveKind, CurvePiece, PlaneCurves, StableSide, Vertex, Window, trace as trace_letter,
@@ -478,7 +479,6 @@ fn degrees_of_stability_of_other_systems() {
 /// ωτ = ±arccos(1 − |B|²/2|A|²) + 2πu and ωδ = arg[A(1 − E)/B] + 2πv.
 #[test]
 fn delay_and_latency() {
-    use num_complex::Complex64;
     let (b, a_v, a_n) = (-0.1, -0.4, -0.2);
     let open = polynomial(&[1.0, b, 1.0]);
     let gain = polynomial(&[a_n + a_v * b, a_v]);
@@ -525,4 +525,44 @@ fn delay_and_latency() {
         let gain = polynomial(&[a_v * -0.5, a_v]);
         System::feedback(polynomial(&[1.0, -0.5, 1.0]), gain, 0.3, 0.4)
     });
+}
+
+/// Curves of a degree of stability between two gains: each is there once, also where its pair meets
+/// on the real axis, and on it λ = −σ + iω solves D by hand. With P = λ² − 1 and Q = k_p + k_d λ the
+/// gains are k_p + k_d λ = −(λ² − 1) e^(λτ).
+#[test]
+fn a_curve_of_a_degree_of_stability_is_there_once() {
+    const DELAY: f64 = 0.3;
+    let at = |k_d: f64, k_p: f64| {
+        let system = System::of_coefficients(&[-1.0, 0.0, 1.0], &[k_p, k_d]);
+        setting(system.unwrap(), DELAY)
+    };
+    let window = Window {
+        p: -2.0..=3.0,
+        q: -3.0..=4.0,
+    };
+    for sigma in [0.01, 0.03, 0.1, 0.2, 0.5, 1.0] {
+        let curves = trace(&SystemPlane::new(&at, &window, [false; 2]), sigma).unwrap();
+        let of_kind = |kind: CurveKind| curves.pieces.iter().filter(move |p| p.kind == kind);
+        for kind in [CurveKind::Pair, CurveKind::RealRoot] {
+            assert!(of_kind(kind).count() > 0, "{sigma}: {kind:?}");
+            let pieces = of_kind(kind).cloned().collect();
+            let alone = PlaneCurves {
+                pieces,
+                ..PlaneCurves::default()
+            };
+            for column in 0..500 {
+                let p = -2.0 + 5.0 * (f64::from(column) + 0.5) / 500.0;
+                let met = along_column(&alone, p);
+                let apart = met.windows(2).all(|w| w[1].0 - w[0].0 > 1e-3);
+                assert!(apart, "{sigma}: {kind:?} at {p}: {met:?}");
+            }
+        }
+        for v in curves.pieces.iter().flat_map(|piece| &piece.vertices) {
+            let lambda = Complex64::new(-sigma, v.omega);
+            let feedback = -(lambda * lambda - 1.0) * (lambda * DELAY).exp();
+            let off = (feedback - v.q - lambda * v.p).norm();
+            assert!(off < 1e-9, "{sigma}: {v:?} {off}");
+        }
+    }
 }

@@ -57,6 +57,10 @@ pub use whole::{Start, on_line, trace_whole};
 
 /// Steps along all boundaries of one window.
 const MOST_STEPS: usize = 1 << 20;
+/// Two points of a line across the window are the same where they differ by less than this part of
+/// the window, and of the scale of frequencies.
+const SAME: f64 = 1e-6;
+const SAME_FREQUENCY: f64 = 1e-3;
 
 /// Traces the boundary of the region in `window` where every root has Re λ < −`sigma`.
 ///
@@ -153,8 +157,9 @@ impl<P: Plane> Tracer<'_, P> {
             joined(backward.arcs, forward.arcs)
         };
         for arc in &arcs {
-            self.mark(arc);
-            self.curves.pieces.extend(self.piece(arc));
+            if self.mark(arc) {
+                self.curves.pieces.extend(self.piece(arc));
+            }
         }
         let corners = forward.corners.iter().map(corner);
         self.curves.corners.extend(corners);
@@ -178,13 +183,23 @@ impl<P: Plane> Tracer<'_, P> {
         Ok(())
     }
 
-    /// Notes where an arc meets columns and edges.
-    fn mark(&mut self, arc: &Arc) {
+    /// Notes where an arc meets columns and edges. Returns whether it is new: an arc that was
+    /// followed before meets each column where that one did.
+    fn mark(&mut self, arc: &Arc) -> bool {
         let window = self.plane.window();
+        let (mut met, mut known) = (0, 0);
         for pair in arc.vertices.windows(2) {
             for i in self.columns_between(pair[0].p, pair[1].p) {
                 let v = self.at_column(arc.family, (pair[0], pair[1]), self.plane.column(i));
-                self.found.on(Across::Column(i)).push((v.q, v.omega));
+                let scale = self.plane.scales(v)[2];
+                let same = |&(q, omega): &(f64, f64)| {
+                    (q - v.q).abs() <= SAME * window.q_width()
+                        && (omega - v.omega).abs() <= SAME_FREQUENCY * scale
+                };
+                let on = self.found.on(Across::Column(i));
+                met += 1;
+                known += u32::from(on.iter().any(same));
+                on.push((v.q, v.omega));
             }
         }
         let slack = 1e-9 * window.q_width();
@@ -199,6 +214,7 @@ impl<P: Plane> Tracer<'_, P> {
                 }
             }
         }
+        known < met || met < 2
     }
 
     fn columns_between(&self, p: f64, q: f64) -> std::ops::Range<usize> {

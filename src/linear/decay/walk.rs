@@ -212,10 +212,16 @@ impl<P: Plane> DecayPlane<'_, P> {
             Family::Pair => outside.v.omega <= 0.0,
             Family::Real { .. } => !self.on_own_side(&outside),
         };
+        // Next to its end the curve of a pair is hard to tell from one of two real roots, of which
+        // one is right of the line.
+        let slow =
+            from.family == Family::Pair && outside.v.omega <= SLOWEST * self.scales(outside.v)[2];
+        let at_end = || self.end_of_pair(inside.v, from.family, sense);
         let turn = if end_of_pair {
-            self.end_of_pair(inside.v, from.family, sense)
+            at_end()
         } else {
-            self.corner(inside.v, from.family)
+            let corner = self.corner(inside.v, from.family);
+            corner.or_else(|| slow.then(at_end).flatten())
         };
         let Some(turn) = turn else {
             return (inside, End::Over);

@@ -4,7 +4,7 @@
 use super::plane::{DecayPlane, Family};
 use super::seeds::Across;
 use super::walk::Arc;
-use super::{Traced, Tracer, closed, joined};
+use super::{SAME, SAME_FREQUENCY, Traced, Tracer, closed, joined};
 use crate::linear::curves::{Corner, PlaneCurves, StableSide, TooManyCurves, Vertex};
 use crate::linear::plane::Plane;
 
@@ -14,9 +14,6 @@ const MOST_STEPS: usize = 1 << 18;
 const HALVINGS: u32 = 40;
 /// How far to either side of a curve roots are counted, in widths of the window.
 const ASIDE: [f64; 2] = [1e-6, 1e-5];
-/// Two points of a line across the window are the same where they differ by less than this part of
-/// the window, and of the frequency.
-const SAME: f64 = 1e-6;
 
 /// A point of a curve on a line across the window.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +79,7 @@ impl<P: Plane> Tracer<'_, P> {
         };
         let scale = self.plane.scales(v)[2];
         let same = |&(y, omega): &(f64, f64)| {
-            (x - y).abs() <= SAME * width && (omega - v.omega).abs() <= 1e-3 * scale
+            (x - y).abs() <= SAME * width && (omega - v.omega).abs() <= SAME_FREQUENCY * scale
         };
         self.found.on(start.across).iter().any(same)
     }
@@ -95,15 +92,16 @@ impl<P: Plane> Tracer<'_, P> {
             let backward = self.walk(start.vertex, Family::Pair, -1.0)?;
             joined(backward.arcs, forward.arcs)
         };
+        for arc in &arcs {
+            if self.mark(arc) {
+                self.cut(arc);
+            }
+        }
         // A start on the edge from which the curve leaves at once is no curve.
         self.found.on(start.across).push(match start.across {
             Across::Column(_) => (start.vertex.q, start.vertex.omega),
             Across::Edge { .. } => (start.vertex.p, start.vertex.omega),
         });
-        for arc in &arcs {
-            self.mark(arc);
-            self.cut(arc);
-        }
         self.check_limits(false)
     }
 
