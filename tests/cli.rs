@@ -374,9 +374,17 @@ fn point_says_everything_for_people_and_programs() {
     near(&value["stable_delays"][0][0], 4.29716, 5e-6);
     near(&value["stable_delays"][0][1], 4.32875, 5e-6);
     near(&value["delay_margin"], 4.32875 - 4.312957, 5e-6);
+    assert_eq!(value["delay_margin_kind"], "finite");
     let open = folder.run(&["point", "--mu-prime", "0.3", "--tau", "2", "--json"]);
     let value: serde_json::Value = serde_json::from_slice(&open.stdout).unwrap();
     assert!(value["stable_delays"][0][1].is_null() && value["delay_margin"].is_null());
+    assert_eq!(value["delay_margin_kind"], "infinite");
+    // Without control b < 0 is unstable at every delay: [] is none.
+    let never = folder.run(&["point", "--mu-prime", "-0.3", "--tau", "2", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&never.stdout).unwrap();
+    assert_eq!(value["stable_delays"], serde_json::json!([]));
+    assert_eq!(value["delay_margin_kind"], "infinite");
+    assert_eq!(value["delay_margin_sign"], -1);
 }
 
 /// The roots of a point: as many as asked for, fewer where there are no more.

@@ -379,7 +379,7 @@ fn facts_come_as_json_with_a_version() {
         ),
     ];
     assert!(
-        all.iter().all(|told| told["schema_version"] == 2),
+        all.iter().all(|told| told["schema_version"] == 3),
         "{all:?}"
     );
     let [plan, info, ..] = &all;

@@ -387,7 +387,9 @@ fn integers_of_a_complete_map_have_no_fill_value() {
     let file = hdf5::File::open(&path).unwrap();
     let has = |name: &str, attribute: &str| file.dataset(name).unwrap().attr(attribute).is_ok();
     for name in ["n_unstable", "status"] {
-        assert!(!has(name, "_FillValue") && has(name, "valid_max"), "{name}");
+        assert!(!has(name, "_FillValue"), "{name}");
+        // Writers of classic netCDF would have to write a number that its types do not hold.
+        assert!(!has(name, "valid_max"), "{name}");
     }
     assert!(has("delay_margin", "_FillValue"));
 }

@@ -94,7 +94,7 @@ fn a_trace_says_what_it_is() {
     let told = json(&folder, &["info", "case.h5"]);
     assert_eq!(
         (&told["kind"], &told["schema_version"]),
-        (&json!("trace"), &json!(2))
+        (&json!("trace"), &json!(3))
     );
     for name in [
         "outcome",

@@ -17,8 +17,9 @@ use utoipa::openapi::{RefOr, Schema};
 use super::failure::Failure;
 
 /// Version of the keys of the JSON output of all commands. It increases when a key is removed or
-/// changes its meaning, but not for new keys. 2: `last_release` counts from switch-on.
-const SCHEMA_VERSION: u32 = 2;
+/// changes its meaning, but not for new keys. 2: `last_release` counts from switch-on. 3:
+/// `stable_delays` and `crossings` are null where they are not known, no longer empty.
+const SCHEMA_VERSION: u32 = 3;
 
 /// An answer with the version of its keys and the inputs.
 #[derive(Serialize)]

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipmap::explore::along_delay::AlongDelay;
+use slipmap::explore::margin_kind::MarginKind;
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Spectrum, Stability, Wanted};
 use slipmap::explore::system_point::SystemPoint;
@@ -299,8 +300,10 @@ pub(super) fn print_stability(
     let time = unit_behind(&units.time());
     let margin = match stability.delay_margin {
         Some(margin) => format!("{}{time}", Shown(margin)),
-        None if stability.delay_margin_sign == 0 => "unknown".into(),
-        None => "infinite: no delay changes stability".into(),
+        None if stability.delay_margin_kind == MarginKind::Infinite => {
+            "infinite: no delay changes stability".into()
+        }
+        None => "unknown".into(),
     };
     if line_of_delays {
         row("delay_margin", margin)?;
@@ -338,7 +341,7 @@ fn print_delays(
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
-    for crossing in &stability.crossings {
+    for crossing in stability.crossings.iter().flatten() {
         let direction = match crossing.direction {
             "touch" => "none: a touch".to_owned(),
             side => format!("to the {side}"),
@@ -352,24 +355,23 @@ fn print_delays(
         );
         row("crossing", text)?;
     }
-    if stability.stable_delays.is_empty() {
+    let Some(intervals) = &stability.stable_delays else {
+        return row("stable delays", "unknown".into());
+    };
+    if intervals.is_empty() {
         row("stable delays", "none".into())?;
     }
-    for interval in stability.stable_delays.iter().take(INTERVALS_SHOWN) {
+    for interval in intervals.iter().take(INTERVALS_SHOWN) {
         let end = interval[1].map_or("infinity".into(), |to| format!("{}{time}", Shown(to)));
         let from = Shown(interval[0].unwrap_or(0.0));
         row("stable delays", format!("{from}{time} < tau < {end}"))?;
     }
-    let more = stability
-        .stable_delays
-        .len()
-        .saturating_sub(INTERVALS_SHOWN);
-    match more {
-        _ if stability.stable_delays_truncated => {
+    match intervals.len().saturating_sub(INTERVALS_SHOWN) {
+        more if stability.stable_delays_truncated => {
             row("", format!("and more than {more} further intervals"))
         }
         0 => Ok(()),
-        _ => row(
+        more => row(
             "",
             format!("and {more} further intervals (--json lists them)"),
         ),

@@ -141,7 +141,8 @@ impl Margins {
         let inside = |&&[from, to]: &&[Option<f64>; 2]| {
             from.unwrap_or(0.0) <= tau && to.is_none_or(|to| tau < to)
         };
-        let interval = stability.stable_delays.iter().find(inside);
+        let intervals = stability.stable_delays.as_deref().unwrap_or_default();
+        let interval = intervals.iter().find(inside);
         margins.tau_margin = interval.map(|[from, to]| {
             let limits = Limits {
                 lower: from.unwrap_or(0.0),

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::finite;
+use super::margin_kind::{MarginKind, sign};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
@@ -34,13 +35,16 @@ pub struct Stability {
     /// `no-rightmost-root`, `degree-unknown` or `refused`; null where it is not.
     pub reason: Option<&'static str>,
     /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
-    /// one is null where it has none.
-    pub stable_delays: Vec<[Option<f64>; 2]>,
+    /// one is null where it has none. Empty where it is stable at none, null where they are not
+    /// known.
+    pub stable_delays: Option<Vec<[Option<f64>; 2]>>,
     /// Some are left out.
     pub stable_delays_truncated: bool,
     /// The distance in τ to the nearest change of stability, positive where stable; null where it
     /// never changes, and where it is not known.
     pub delay_margin: Option<f64>,
+    /// What that distance is: `finite`, `infinite` or `unknown`.
+    pub delay_margin_kind: MarginKind,
     /// The sign of that distance, also of an infinite one: 1 where stable, −1 where unstable, 0 on
     /// a boundary and where it is not known.
     pub delay_margin_sign: i8,
@@ -51,8 +55,8 @@ pub struct Stability {
     pub first_crossing: Option<f64>,
     /// By how much the number of unstable roots grows there; null where there is no such delay.
     pub first_change: Option<i8>,
-    /// Where roots cross the imaginary axis as the delay grows.
-    pub crossings: Vec<PointCrossing>,
+    /// Where roots cross the imaginary axis as the delay grows; null where that is not known.
+    pub crossings: Option<Vec<PointCrossing>>,
     /// The latencies at the point's delay.
     #[serde(flatten)]
     pub latencies: Latencies,
@@ -157,14 +161,15 @@ impl Stability {
             stable: count.stable(),
             marginal: count.marginal,
             reason: None,
-            stable_delays: ends(&stable),
+            stable_delays: Some(ends(&stable)),
             stable_delays_truncated: intervals.next().is_some(),
             delay_margin: finite(delay_margin),
+            delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
             n_at_zero_delay: Some(crossings.at_zero_delay),
             first_crossing: first.map(|(delay, _)| delay),
             first_change: first.map(|(_, change)| change),
-            crossings: crossings.iter().map(PointCrossing::of).collect(),
+            crossings: Some(crossings.iter().map(PointCrossing::of).collect()),
             latencies: Latencies::default(),
             essential_abscissa: None,
             spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
@@ -181,7 +186,13 @@ impl Stability {
         let line = line.in_physical_time(time_unit);
         let mut intervals = line.stable_intervals();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        let delay_margin = line.margins().margin_at(tau);
+        let truncated = intervals.next().is_some() || intervals.gave_up();
+        let delays_known = delays_known(&line) && !(stable.is_empty() && truncated);
+        let delay_margin = match line.reason {
+            // At every delay there are infinitely many unstable roots.
+            Some(Reason::Infinite) if tau > 0.0 => f64::NEG_INFINITY,
+            _ => line.margins().margin_at(tau),
+        };
         let first = line.changes().next();
         let count = found.count;
         let stable_here = count.is_some_and(|count| count.stable());
@@ -194,14 +205,16 @@ impl Stability {
             marginal: count.is_some_and(|count| count.marginal)
                 || found.reason == Some(Reason::RootAtOrigin),
             reason: found.reason.map(Reason::name),
-            stable_delays: ends(&stable),
-            stable_delays_truncated: intervals.next().is_some() || intervals.gave_up(),
+            stable_delays: delays_known.then(|| ends(&stable)),
+            stable_delays_truncated: delays_known && truncated,
             delay_margin: finite(delay_margin),
+            delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
             n_at_zero_delay: (!line.uncounted).then_some(line.at_zero_delay),
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
-            crossings: line.crossings.iter().map(PointCrossing::of).collect(),
+            crossings: crossings_known(&line)
+                .then(|| line.crossings.iter().map(PointCrossing::of).collect()),
             latencies: Latencies::default(),
             essential_abscissa: finite(essential),
             line: wanted.line,
@@ -231,17 +244,21 @@ impl Latencies {
     }
 }
 
+/// Whether the stable delays of a line are known. Where infinitely many roots are unstable there
+/// are none.
+fn delays_known(line: &DelayLine) -> bool {
+    line.reason == Some(Reason::Infinite) || crossings_known(line)
+}
+
+/// Whether the crossings of a line are known. What is always marginal for no reason is a line with
+/// too many crossings to list, or without a count to begin with.
+fn crossings_known(line: &DelayLine) -> bool {
+    !line.uncounted && (!line.always_marginal || line.reason.is_some())
+}
+
 fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
     let ends = |s: &StableInterval| [Some(s.from), finite(s.to)];
     intervals.iter().map(ends).collect()
-}
-
-fn sign(margin: f64) -> i8 {
-    match margin {
-        0.0 => 0,
-        // The cast turns NaN into 0.
-        margin => margin.signum() as i8,
-    }
 }
 
 /// The shortest delay at which a pair crosses, and the change of the count there.

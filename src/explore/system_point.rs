@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::finite;
+use super::margin_kind::MarginKind;
 use super::stability::{Stability, Wanted};
 use crate::linear::general::Class;
 use crate::sweep::LinearModel;
@@ -25,8 +26,7 @@ pub struct SystemPoint {
     /// δ; null for P and Q, which have no latency.
     pub latency: Option<f64>,
     /// Whether all delays are covered. They are not where P or Q depends on the delay: then only
-    /// `n_unstable` and the roots are given, `stable_delays` and `crossings` are empty, and other
-    /// values about other delays are null.
+    /// `n_unstable` and the roots are given, and all values about other delays are null.
     pub line_of_delays: bool,
     /// The largest latency of the feedback, counted from none, at which the setting stays stable; 0
     /// where it is unstable without latency. Null where it is infinite or unknown, and for P and Q,
@@ -87,12 +87,13 @@ impl SystemPoint {
 
 /// Keeps what holds at the delay itself: at other delays P and Q differ.
 fn forget_other_delays(stability: &mut Stability) {
-    stability.stable_delays.clear();
+    stability.stable_delays = None;
     stability.stable_delays_truncated = false;
     stability.delay_margin = None;
+    stability.delay_margin_kind = MarginKind::Unknown;
     stability.delay_margin_sign = 0;
     stability.n_at_zero_delay = None;
     stability.first_crossing = None;
     stability.first_change = None;
-    stability.crossings.clear();
+    stability.crossings = None;
 }

@@ -36,8 +36,8 @@ pub(super) struct Variables<'a> {
 impl Variables<'_> {
     pub(super) fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
         let dataset = match field.storage() {
-            Storage::Count => self.integers(field.name(), N_UNSTABLE_FILL, N_UNSTABLE_FILL - 1)?,
-            Storage::Kind | Storage::Few => self.integers(field.name(), FEW_FILL, FEW_FILL - 1)?,
+            Storage::Count => self.variable(field.name(), N_UNSTABLE_FILL)?,
+            Storage::Kind | Storage::Few => self.variable(field.name(), FEW_FILL)?,
             Storage::Real => {
                 let dataset = self.variable(field.name(), f64::NAN)?;
                 put_numbers(&dataset, FILL_VALUE, &[f64::NAN])?;
@@ -68,7 +68,7 @@ impl Variables<'_> {
     }
 
     pub(super) fn status(&mut self) -> hdf5::Result<Dataset> {
-        let dataset = self.integers(STATUS, STATUS_FILL, STATUS_FILL - 1)?;
+        let dataset = self.variable(STATUS, STATUS_FILL)?;
         put_text(&dataset, "long_name", "status of the cell")?;
         put_text(&dataset, "units", "1")?;
         put_numbers(&dataset, "flag_masks", &FLAGS.map(|(mask, _)| mask))?;
@@ -80,17 +80,9 @@ impl Variables<'_> {
         Ok(dataset)
     }
 
-    /// A dataset of integers up to `largest`, with `fill` where there is no value. `_FillValue` is
+    /// A dataset with `fill` where there is no value. The attribute `_FillValue` of integers is
     /// written later, and only where cells are missing: with it, readers turn integers into floats.
-    fn integers<T>(&mut self, name: &str, fill: T, largest: T) -> hdf5::Result<Dataset>
-    where
-        T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,
-    {
-        let dataset = self.variable(name, fill)?;
-        put_numbers(&dataset, "valid_max", &[largest])?;
-        Ok(dataset)
-    }
-
+    /// There is no `valid_max`: netCDF-3 has no unsigned type, and writers of it refuse 65534.
     fn variable<T>(&mut self, name: &str, fill: T) -> hdf5::Result<Dataset>
     where
         T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,

@@ -1,4 +1,6 @@
-"""xarray, with both of its netCDF-4 engines: named coordinates, nearest cells, flags, boundaries."""
+"""xarray, with both of its netCDF-4 engines: named coordinates, nearest cells, flags, boundaries, classic netCDF."""
+
+import tempfile
 
 import numpy as np
 import xarray as xr
@@ -46,6 +48,19 @@ def check_as_opened_by_default(engine):
         e.equal("dimensions of a line", along_tau.dims, ("tau",))
 
 
+def check_classic(engine):
+    """As classic netCDF, whose integers are signed: the types change, the numbers do not."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = f"{folder}/classic.nc"
+        with xr.open_dataset(e.MAP, engine=engine) as ds:
+            ds.drop_encoding().to_netcdf(path, engine="netcdf4", format="NETCDF3_CLASSIC")
+        with xr.open_dataset(path, engine="netcdf4", mask_and_scale=False) as ds:
+            for name, cells in e.CELLS.items():
+                assert np.array_equal(ds[name].values, cells), f"cells of {name} in classic netCDF"
+            e.equal("flag_masks", list(ds.status.attrs["flag_masks"]), e.FLAG_MASKS)
+            e.equal("type of counts", str(ds.n_unstable.dtype), "int16")
+
+
 def check_boundaries(engine):
     with xr.open_dataset(e.MAP, engine=engine, group="boundaries", mask_and_scale=False) as ds:
         e.equal("dimensions of omega", ds.omega.dims, ("vertex",))
@@ -63,6 +78,7 @@ for engine in ["netcdf4", "h5netcdf"]:
     try:
         check_cells(engine)
         check_as_opened_by_default(engine)
+        check_classic(engine)
         check_boundaries(engine)
     except AssertionError as error:
         raise AssertionError(f"with the engine {engine}: {error}") from error

@@ -30,7 +30,8 @@ const ANEW =
 const ANSWERED = {
   abscissa: ({ abscissa }) => abscissa,
   frequency: ({ frequency }) => frequency,
-  delay_margin: ({ delay_margin: margin }) => margin ?? Infinity,
+  delay_margin: ({ delay_margin: margin, delay_margin_kind: kind, delay_margin_sign: sign }) =>
+    kind === "infinite" ? sign * Infinity : margin,
   relaxation_time: ({ abscissa }) =>
     abscissa === null ? null : abscissa < 0 ? -1 / abscissa : Infinity,
 };

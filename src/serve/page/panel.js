@@ -38,7 +38,8 @@ function unitsOf(text) {
 }
 
 /** A number of unstable roots in words. */
-export const counted = (n) => `${n} unstable root${n === 1 ? "" : "s"}`;
+export const counted = (n) =>
+  n === null ? "not counted" : `${n} unstable root${n === 1 ? "" : "s"}`;
 
 export class Panel {
   /**
@@ -150,11 +151,13 @@ export class Panel {
     const before = this.point;
     [this.point, this.text] = [point, this.points.text];
     if (!point || point === before) return;
-    const margin = point.delay_margin === null ? "infinite" : this.#time(point.delay_margin);
+    const { delay_margin_kind: kind } = point;
+    const margin = kind === "finite" ? this.#time(point.delay_margin) : kind;
     const verdict = point.marginal ? "marginal" : point.stable ? "stable" : "unstable";
     const interval = ([from, to]) => `${told(from)} < τ < ${to === null ? "∞" : this.#time(to)}`;
-    const stable = point.stable_delays.slice(0, INTERVALS).map(interval);
-    const more = point.stable_delays.length - stable.length;
+    const intervals = point.stable_delays ?? [];
+    const stable = intervals.slice(0, INTERVALS).map(interval);
+    const more = intervals.length - stable.length;
     if (more > 0) stable.push(`${more}${point.stable_delays_truncated ? " or more" : ""} others`);
     const rate = unitOf([0, 0, -1], this.units);
     const root = ([re, im]) => withUnit(told(re) + (im === 0 ? "" : ` ± ${told(im)} i`), rate);
@@ -167,7 +170,8 @@ export class Panel {
       ["spectral abscissa", abscissa],
       ["rightmost roots", sure],
     ]);
-    const delays = stable.length ? stable.join(", ") : "none";
+    const none = point.stable_delays ? "none" : "unknown";
+    const delays = stable.length ? stable.join(", ") : none;
     terms(element("intervals"), [["stable delays", delays]]);
     const list = point.roots.slice(0, ROOTS).map((r) => make("li", {}, root(r)));
     element("root-list").replaceChildren(...list);

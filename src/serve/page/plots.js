@@ -56,7 +56,8 @@ export function drawRoots(canvas, { roots, certified_line: line, unit }) {
 }
 
 /** How far along τ the stable delays are shown. */
-function reach({ tau, stable_delays: intervals }) {
+function reach({ tau, stable_delays }) {
+  const intervals = stable_delays ?? [];
   const ends = intervals.slice(0, 6).flatMap(([from, to]) => (to === null ? [from] : [from, to]));
   const near = ends.filter((end) => end <= Math.max(4 * tau, 25));
   return 1.15 * Math.max(tau, ...near, tau === 0 && near.length === 0 ? 1 : 0) || 1;
@@ -70,8 +71,10 @@ export function drawDelays(canvas, point, axis) {
   const colour = pen.colour("ink");
   const x = (tau) => area.x + xs.part(tau) * area.w;
   pen.within({ ...area, y: 0, h: pen.height }, () => {
-    pen.box(area, { fill: pen.colour("unstable") });
-    for (const [from, to] of point.stable_delays) {
+    const { stable_delays: intervals } = point;
+    // Where nothing is known nothing is filled.
+    if (intervals) pen.box(area, { fill: pen.colour("unstable") });
+    for (const [from, to] of intervals ?? []) {
       const [left, right] = [x(from), x(Math.min(to ?? Infinity, 2 * xs.to))];
       pen.box({ ...area, x: left, w: Math.max(1, right - left) }, { fill: pen.colour("stable") });
     }
