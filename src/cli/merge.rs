@@ -14,7 +14,7 @@ use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
-use super::output::{check_name, provenance, tell_assembled};
+use super::output::{check_name, provenance, tell_assembled, tell_no_boundaries};
 use super::show::{nothing_to_do, show};
 use super::signals::Signals;
 use super::{open_files, run, say};
@@ -130,6 +130,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
 
 fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure> {
     tell_assembled(assembled);
+    tell_no_boundaries(plan);
     let size = bytes(std::fs::metadata(target).map_or(0, |m| m.len()));
     let cells = grouped(plan.cells());
     let missing = match assembled.cells_missing {

@@ -8,6 +8,7 @@ use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
 use slipmap::report::picture;
 use slipmap::store::describe::Provenance;
+use slipmap::sweep::Plan;
 use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
@@ -120,6 +121,13 @@ pub(super) fn warn_of_idle_delay(idle: bool) {
 pub(super) fn warn_beyond_curve(remark: Option<String>) {
     if let Some(remark) = remark {
         say::remark(format_args!("warning: {remark}"));
+    }
+}
+
+/// Reports on standard error why a map has no curves, where it would have them if asked for.
+pub(super) fn tell_no_boundaries(plan: &Plan) {
+    if let Some(why) = plan.no_boundaries().filter(|why| why.is_only_unasked()) {
+        say::note(format_args!("no boundaries: {why}"));
     }
 }
 

@@ -107,7 +107,12 @@ struct Facts {
     cells: u64,
     tiles: u64,
     cells_of_a_tile: u64,
+    /// Planes in which boundaries are traced.
     boundary_planes: u64,
+    /// The two axes of these planes; empty without any.
+    boundaries_of: Vec<String>,
+    /// Why there are none; null where there are.
+    no_boundaries: Option<String>,
     /// Null where no best settings are asked for.
     best_planes: Option<u64>,
     /// Bytes of all cells in memory, and about those of the map on disk.
@@ -125,12 +130,10 @@ impl Facts {
     fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
         let costs = Costs::of(plan)?;
         let axis = |axis: &Axis| AxisFacts::of(&axis.parameter, &axis.values);
+        let name = |axis: &Axis| axis.parameter.name().to_owned();
         let unit = |axis: &Axis| {
             let parameter = &axis.parameter;
-            (
-                parameter.name().to_owned(),
-                parameter.unit(&plan.spec.units),
-            )
+            (name(axis), parameter.unit(&plan.spec.units))
         };
         let (total, spread) = costs.seconds();
         let seconds = [(total - spread).max(0.0), total, total + spread];
@@ -146,6 +149,10 @@ impl Facts {
             tiles: plan.tiles.len() as u64,
             cells_of_a_tile: plan.tiles.tile_cells() as u64,
             boundary_planes: plan.boundary_planes(),
+            boundaries_of: plan.boundary_plane.map_or_else(Vec::new, |(p, q)| {
+                [p, q].map(|axis| name(&plan.spec.axes[axis])).to_vec()
+            }),
+            no_boundaries: plan.no_boundaries().map(|why| why.to_string()),
             best_planes: plan.best_plane().map(|_| plan.best_planes()),
             bytes: plan.cells() * plan.bytes_per_cell(),
             bytes_on_disk: costs.bytes_on_disk(plan),
@@ -172,10 +179,14 @@ impl Facts {
         rows.row("cells", grouped(self.cells))?;
         let (tiles, cells) = (grouped(self.tiles), grouped(self.cells_of_a_tile));
         rows.row("tiles", format!("{tiles} of {cells} cells"))?;
-        rows.row(
-            "boundaries",
-            format!("in {}", counted(self.boundary_planes, "plane")),
-        )?;
+        let boundaries = match &self.no_boundaries {
+            Some(why) => format!("none: {why}"),
+            None => {
+                let planes = counted(self.boundary_planes, "plane");
+                format!("in {planes} of {}", self.boundaries_of.join(" and "))
+            }
+        };
+        rows.row("boundaries", boundaries)?;
         if let Some(planes) = self.best_planes {
             rows.row("best", format!("in {}", counted(planes, "plane")))?;
         }

@@ -187,6 +187,7 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
     let observers = watched.observers;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
     output::tell_assembled(&assembled);
+    output::tell_no_boundaries(plan);
     let path = job.map;
     let told = say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",

@@ -6,6 +6,7 @@ use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_numbers, put_text};
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
+use super::curve_words::{DIRECTION, STABLE_SIDE, direction_along, stable_sides};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, PLANE};
 use crate::sweep::Plan;
@@ -75,6 +76,10 @@ impl Maker<'_> {
     fn column<T: H5Type>(&mut self, about: &BoundaryColumn) -> hdf5::Result<Dataset> {
         let units = &self.plan.spec.units;
         let dataset = match about.named {
+            Named::Number(name @ DIRECTION, _) => {
+                let meaning = direction_along(&self.second);
+                self.make::<T>(about.per, name, (&meaning, "1"))
+            }
             Named::Number(name, meaning) => self.make::<T>(about.per, name, (meaning, "1")),
             Named::Frequency(name, meaning) => {
                 self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
@@ -89,7 +94,9 @@ impl Maker<'_> {
             put_text(&dataset, "sample_dimension", counted)?;
         }
         if let Some((values, meanings)) = about.flags {
-            put_flags(&dataset, values, meanings)?;
+            let sides = stable_sides([&self.parameter, &self.second]);
+            let of_side = matches!(about.named, Named::Number(STABLE_SIDE, _));
+            put_flags(&dataset, values, if of_side { &sides } else { meanings })?;
         }
         Ok(dataset)
     }
@@ -264,4 +271,46 @@ fn repeat_each(columns: &mut [OuterColumn], values: &[f64], times: usize) {
 pub(super) fn put_flags(dataset: &Dataset, values: &[i8], meanings: &str) -> hdf5::Result<()> {
     put_numbers(dataset, "flag_values", values)?;
     put_text(dataset, "flag_meanings", meanings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::attributes::text;
+    use crate::sweep::SweepSpec;
+
+    /// Without the delay in the plane the words of the map name both parameters.
+    #[test]
+    fn sides_are_told_by_the_parameters_of_the_plane() {
+        let folder = tempfile::tempdir().unwrap();
+        for (axes, sides, grows) in [
+            (
+                "alpha_n = [-1, 0]\nalpha_v = [-1, 0]\n[fixed]\ntau = 1\nmu_prime = -0.3\n",
+                "smaller_alpha_n smaller_alpha_v neither larger_alpha_v larger_alpha_n",
+                "how a pair of roots crosses with growing alpha_v",
+            ),
+            (
+                "alpha_n = [-1, 0]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.3\n",
+                "smaller_parameter shorter_delays neither longer_delays larger_parameter",
+                "how a pair of roots crosses with growing delay",
+            ),
+        ] {
+            let sweep = format!("boundaries = true\n[axes]\n{axes}");
+            let plan = Plan::new(sweep.parse::<SweepSpec>().unwrap()).unwrap();
+            let file = hdf5::File::create(folder.path().join("curves.h5")).unwrap();
+            let mut dimensions = Dimensions::default();
+            let plane = plan.boundary_plane.unwrap();
+            BoundaryWriter::create(&file, &mut dimensions, &plan, plane).unwrap();
+            let said = |name: &str, attribute: &str| {
+                let dataset = file.dataset(&format!("{BOUNDARIES}/{name}")).unwrap();
+                text(&dataset, attribute).unwrap()
+            };
+            assert_eq!(said("stable_side", "flag_meanings"), sides);
+            assert_eq!(said("direction", "long_name"), grows);
+            assert_eq!(
+                said("kind", "flag_meanings"),
+                super::super::curve_words::CURVE_KINDS
+            );
+        }
+    }
 }

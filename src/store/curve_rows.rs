@@ -3,21 +3,12 @@
 use hdf5::H5Type;
 use serde::{Deserialize, Serialize};
 
+use super::curve_words::{CURVE_KINDS, DIRECTION, DIRECTIONS, STABLE_SIDE, STABLE_SIDES};
 use super::schema::{CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY};
 use super::values::Number;
 use crate::linear::curves::{Corner, CurvePiece};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
-
-/// How a pair of roots crosses, in the words of the map: for −1, 0, 1.
-pub const DIRECTIONS: &str = "to_the_left touch to_the_right";
-/// The side of a curve on which sliding is stable, in the words of the map, for −2 to 2. −2 and 2
-/// stand where the first parameter of the plane is constant along the curve. In planes without the
-/// delay "delays" means the second parameter.
-pub const STABLE_SIDES: &str =
-    "smaller_parameter shorter_delays neither longer_delays larger_parameter";
-/// What lies on the line along a curve, in the words of the map: for 0, 1, 2.
-pub const CURVE_KINDS: &str = "pair real_root leading_coefficient";
 
 /// What each number of a column belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,7 +145,7 @@ boundary_columns! {
             flags: Some((&[-1, 0, 1], DIRECTIONS)),
             ..column(
                 Per::Curve,
-                Named::Number("direction", "how a pair of roots crosses with growing delay"),
+                Named::Number(DIRECTION, "how a pair of roots crosses with growing SECOND"),
             )
         };
         /// Per curve: −1 shorter delays, 0 neither, 1 longer delays, ∓2 smaller and larger p.
@@ -163,7 +154,7 @@ boundary_columns! {
             ..column(
                 Per::Curve,
                 Named::Number(
-                    "stable_side",
+                    STABLE_SIDE,
                     "side of the curve on which sliding is stable, to its degree of stability",
                 ),
             )

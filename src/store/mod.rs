@@ -20,6 +20,7 @@
 //! - `curve_reader`: reads the crossing curves of a map
 //! - `curve_rows`: the curves of a plane as columns of numbers, declared once for the tiles, the
 //!   map and its reader
+//! - `curve_words`: the words for kinds, directions and sides of curves
 //! - `describe`: what a file says of itself: who made it, the sweep, the friction law, parameters
 //! - `durable`: files written whole, synced and renamed
 //! - `error`: why a map or trace could not be written or read, with the file's name and the cause
@@ -50,6 +51,7 @@ pub mod columns;
 mod contents_hash;
 pub mod curve_reader;
 pub mod curve_rows;
+pub mod curve_words;
 pub mod describe;
 mod durable;
 mod error;

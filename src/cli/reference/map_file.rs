@@ -109,7 +109,7 @@ pub(super) fn map_file(page: &mut String) {
     paragraph(
         page,
         "Besides `long_name`, `units`, `comment`, `flag_values`, `flag_masks`, \
-                     `flag_meanings`, `valid_max` and `_FillValue`, as CF has them:",
+                     `flag_meanings` and `_FillValue`, as CF has them:",
     );
     named(page, &OF_CELLS);
     heading(page, 2, &format!("The group `{}`", schema::BOUNDARIES));
@@ -118,7 +118,9 @@ pub(super) fn map_file(page: &mut String) {
         "Exact curves in every plane of two parameters (PARAMETER and SECOND below, which is \
          `tau` in planes with the delay), as contiguous ragged arrays of CF: curve after curve, \
          vertex after vertex. The axes outside of the plane stand in it once for every curve, and \
-         with `corner_` before the name once for every corner.",
+         with `corner_` before the name once for every corner. In planes without `tau` the words of \
+         `stable_side` name both parameters: smaller_PARAMETER, smaller_SECOND, neither, \
+         larger_SECOND, larger_PARAMETER.",
     );
     let rows = CurveRows::described().unwrap_or_default().into_iter();
     let rows = rows.map(|(per, name, meaning)| [code(&name), per.to_owned(), meaning]);

@@ -16,7 +16,8 @@ use super::scene::{Mark, Scene};
 use super::speed;
 use super::stable_area::stable_throughout;
 use super::symbols;
-use super::text::axis_title;
+use super::text::{Rich, axis_title};
+use super::traced::Curves;
 use super::view::View;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::report::known::Known;
@@ -30,20 +31,23 @@ const GAP: f64 = 34.0;
 /// The most cells per axis that are read to learn the stability where no curve lies.
 const MOST_TOLD: usize = 600;
 
-/// Draws a heat map of `field`, with the curves of `curves` that bound the stable region. The
+/// Draws a heat map of `field`, with those of `curves` that bound the stable region. The
 /// number beside the options limits the cells each way in all panels together.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
     y: usize,
     field: Field,
-    curves: &[MapCurve],
+    found: &Curves,
     (options, most): (&PictureOptions, usize),
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
+    let curves = &found.list;
     let unit = map.field_unit(field);
     let (title, mut notes) = choice::head(map, field, options);
     notes.extend(view.notes(map));
+    let missing = |why| Rich::plain(&format!("boundaries are missing: {why}"));
+    notes.extend(found.missing.map(missing));
     let mut body = page::head(scene, &title, &notes);
     let u = scene.unit();
     let across = (view.panels.len() as f64).sqrt().ceil() as usize;
@@ -57,7 +61,8 @@ pub(super) fn draw(
     let symbols = symbols::of_view(map, view, y)?;
     let kinds = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
     let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
-    let key = Key::new((field, &unit), &planes, !curves.is_empty(), options)?.with(entries);
+    let bounded = curves.iter().any(MapCurve::bounds_stability);
+    let key = Key::new((field, &unit), &planes, bounded, options)?.with(entries);
     let column = match options.no_legend {
         true => None,
         false => Some(body.cut_right(key.width(u), GAP * u)),
@@ -67,7 +72,7 @@ pub(super) fn draw(
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
     let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
-    let turned = view.is_turned(map);
+    let turned = found.turned;
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);

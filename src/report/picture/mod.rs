@@ -29,6 +29,7 @@
 //! - `render`: from a scene to the bytes of a PNG or SVG file
 //! - `scene`: the contents of a picture, in pixels from its upper left corner, independent of
 //!   rendering
+//! - `traced`: the curves of the planes that are shown, of the map or traced from its sweep
 //! - `told_apart`: tests: colours under three kinds of colour blindness
 //! - `view`: the part of a map that is shown
 
@@ -70,6 +71,7 @@ mod symbols;
 mod text;
 mod ticks;
 mod trace;
+mod traced;
 mod value_scale;
 mod view;
 
@@ -91,6 +93,7 @@ pub use gradient::ColourMap;
 pub use options::{Named, PictureKind, PictureOptions};
 pub use roots::PointPicture;
 use scene::Scene;
+use traced::Curves;
 use view::{MOST_PANELS, View};
 
 /// Draws a map for the file `path`, PNG, SVG or PDF by its extension, without writing any file. The
@@ -198,24 +201,22 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         line::draw(map, &view, &fields, (options, most), &mut scene)?;
         return Ok(scene);
     };
-    let (in_plane, turned) = (view.is_boundary_plane(map), view.is_turned(map));
-    let curves = match in_plane {
-        true => map.curves_where(|outer| view.shows(map, outer))?,
-        false => Vec::new(),
-    };
+    let curves = Curves::of(map, &view)?;
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default = fits && !turned && choice.leaves_curves(map) && !curves.is_empty();
+    let held = curves.stored && !curves.turned && !curves.list.is_empty();
+    let by_default = fits && held && choice.leaves_curves(map);
+    let over_speed = curves
+        .turned
+        .then_some("over a speed they are drawn over the cells alone");
+    if options.kind == Some(PictureKind::Boundaries)
+        && let Some(why) = over_speed.or(curves.none).or(curves.missing)
+    {
+        return Err(no_curves(why));
+    }
     match options.kind {
-        Some(PictureKind::Boundaries) if !in_plane || turned => {
-            return Err(no_curves(match map.boundary_plane() {
-                _ if turned => "over a speed they are drawn over the cells alone",
-                None => "its sweep traced none",
-                Some(_) => "they lie in another plane, of whose axes one is held",
-            }));
-        }
         kind if kind == Some(PictureKind::Boundaries) || (kind.is_none() && by_default) => {
             options.about_values("curves have no scale of values")?;
-            boundaries::draw(map, &view, y, &curves, options, &mut scene)?;
+            boundaries::draw(map, &view, y, &curves.list, options, &mut scene)?;
         }
         _ => heat::draw(map, &view, y, field, &curves, (options, most), &mut scene)?,
     }

@@ -7,8 +7,10 @@ use std::sync::Arc;
 
 use super::*;
 use crate::linear::Crossings;
+use crate::linear::certificate::roots_right_of;
+use crate::linear::curves::StableSide;
 use crate::maps::maker::make_in_memory;
-use crate::model::Groups;
+use crate::model::{Groups, elementary};
 use crate::store::describe::Provenance;
 use crate::sweep::{Field, Parameter, Plan, SweepSpec};
 
@@ -327,6 +329,79 @@ fn what_cannot_be_drawn_is_refused_and_leaves_nothing() {
     let cell = Case::new("[axes]\nmu_prime = [-0.1]\n tau = [1.0]");
     let error = cell.draw("x.png", &default).unwrap_err();
     assert!(matches!(error, PictureError::NothingToDraw));
+}
+
+/// Without curves of its plane in the map, a picture traces them: on each a root lies on the axis,
+/// by the letter's Eq. (3) written out, and inside the stable region the argument principle counts
+/// no root.
+#[test]
+fn a_plane_at_a_delay_has_its_boundaries() {
+    const DELAY: f64 = 2.0;
+    let case = Case::new(
+        "fields = [\"n_unstable\"]\n[axes]\nalpha_v = { from = -1.2, to = 0.4, points = 33 }\n\
+         alpha_n = { from = -3, to = 0.5, points = 29 }\ntau = [1.0, 2.0]\n[fixed]\nmu_prime = \
+         -0.3\n",
+    );
+    let view = View::new(&case.map, &[(Parameter::Tau.into(), DELAY)]).unwrap();
+    assert!(!view.is_boundary_plane(&case.map));
+    let curves = Curves::of(&case.map, &view).unwrap();
+    assert!(!curves.stored && !curves.turned && curves.none.is_none());
+    let (mut bounding, mut checked) = (0, 0);
+    for curve in &curves.list {
+        assert_eq!(curve.outer, [DELAY]);
+        for v in &curve.piece.vertices {
+            // D(λ) = λ² + bλ + 1 − (a_n + a_v (b + λ)) (1 − e^(−λτ)) at λ = iω.
+            let (omega, b) = (v.omega, -0.3);
+            let (sin, cos) = (
+                elementary::sin(omega * DELAY),
+                elementary::cos(omega * DELAY),
+            );
+            let feedback = [v.q + v.p * b, v.p * omega];
+            let re = 1.0 - omega * omega - feedback[0] * (1.0 - cos) + feedback[1] * sin;
+            let im = b * omega - feedback[0] * sin - feedback[1] * (1.0 - cos);
+            assert!(re.abs() < 1e-9 && im.abs() < 1e-9, "{v:?}: {re} {im}");
+        }
+        bounding += u32::from(curve.bounds_stability());
+        let side = match curve.piece.stable_side {
+            StableSide::Shorter => -1e-5,
+            StableSide::Longer => 1e-5,
+            _ => continue,
+        };
+        let v = curve.piece.vertices[curve.piece.vertices.len() / 2];
+        let count = |by: f64| roots_right_of(Groups::new(-0.3, v.p, v.q + by), DELAY, 0.0);
+        assert_eq!((count(side), count(-side)), (Some(0), Some(2)), "{v:?}");
+        checked += 1;
+    }
+    assert!(bounding > 0 && checked > 0, "{bounding} {checked}");
+    let options = PictureOptions {
+        at: vec![(Parameter::Tau.into(), DELAY)],
+        ..PictureOptions::default()
+    };
+    let text = |options: &PictureOptions| {
+        String::from_utf8(case.draw("map.svg", options).unwrap()).unwrap()
+    };
+    let drawn = text(&options);
+    assert!(drawn.contains("boundary") && drawn == text(&options));
+    let boundaries = PictureOptions {
+        kind: Some(PictureKind::Boundaries),
+        ..options
+    };
+    assert!(text(&boundaries).contains("its boundary"));
+}
+
+/// What a sweep does not want traced is not traced for a picture either.
+#[test]
+fn boundaries_that_are_not_wanted_are_not_drawn() {
+    let case = Case::new(
+        "boundaries = false\n[axes]\nalpha_v = [-1, -0.5, 0]\nalpha_n = [-1, 0, 1]\n[fixed]\n\
+         mu_prime = -0.3\ntau = 2\n",
+    );
+    let default = PictureOptions::default();
+    let drawn = String::from_utf8(case.draw("map.svg", &default).unwrap()).unwrap();
+    assert!(!drawn.contains("boundary"));
+    let error = case.draw("map.svg", &of_kind(PictureKind::Boundaries));
+    let says = error.unwrap_err().to_string();
+    assert!(says.contains("its sweep has boundaries = false"), "{says}");
 }
 
 /// Counts that differ by one have different colours, and each has an entry of its own.

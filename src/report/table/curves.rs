@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::cells::{about, of_axis};
 use super::{Column, Table, TableError};
 use crate::linear::Direction;
-use crate::store::curve_rows::{CURVE_KINDS, DIRECTIONS, STABLE_SIDES};
+use crate::store::curve_words::{CURVE_KINDS, DIRECTIONS, direction_along, stable_sides};
 use crate::store::map_file::MapCurve;
 use crate::store::schema::DEGREE_OF_STABILITY;
 use crate::store::{MapAxis, MapFile};
@@ -44,13 +44,14 @@ pub fn write_curves(
         let mut values = curve.outer.iter().zip(&wanted);
         values.all(|(value, wanted)| wanted.is_none_or(|wanted| wanted == *value))
     };
+    let sides = stable_sides([&axes[p].parameter, &axes[tau].parameter]);
     let mut number = 0;
     let mut written = Ok(());
     map.for_each_curve(|curve| {
         if stop.load(Ordering::Relaxed) {
             written = Err(TableError::Stopped);
         } else if shown(&curve) {
-            written = write_curve(&mut table, number, &curve);
+            written = write_curve(&mut table, &sides, number, &curve);
         }
         number += 1;
         match written {
@@ -66,14 +67,11 @@ fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> 
     let degree = "degree of stability: roots on the curve have this real part, negated";
     let omega = map.units().angular_frequency();
     let omega = Column::of("omega", omega, "crossing frequency");
+    let direction = direction_along(&plane[1].parameter);
     let of_curve = [
         Column::of(DEGREE_OF_STABILITY, map.degree_unit(), degree),
         Column::of("branch", "", "branch number k of the crossing delay"),
-        Column::of(
-            "direction",
-            "",
-            "how a pair of roots crosses with growing delay",
-        ),
+        Column::of("direction", "", &direction),
         Column::of(
             "stable_side",
             "",
@@ -94,6 +92,7 @@ fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> 
 
 fn write_curve(
     table: &mut Table<impl Write>,
+    sides: &str,
     number: u64,
     curve: &MapCurve,
 ) -> Result<(), TableError> {
@@ -105,7 +104,9 @@ fn write_curve(
     };
     let side = (piece.stable_side.sign() + 2) as usize;
     let kind = usize::from(piece.kind.number().unsigned_abs());
-    let word = |words: &'static str, place| words.split(' ').nth(place).unwrap_or("");
+    fn word(words: &str, place: usize) -> &str {
+        words.split(' ').nth(place).unwrap_or("")
+    }
     for vertex in &piece.vertices {
         table.whole(number)?;
         for &value in &curve.outer {
@@ -114,7 +115,7 @@ fn write_curve(
         table.number(curve.degree_of_stability)?;
         table.whole(piece.branch)?;
         table.text(word(DIRECTIONS, direction))?;
-        table.text(word(STABLE_SIDES, side))?;
+        table.text(word(sides, side))?;
         table.text(word(CURVE_KINDS, kind))?;
         for value in [vertex.p, vertex.q, vertex.omega] {
             table.number(value)?;

@@ -13,8 +13,9 @@ use crate::model::friction::{FrictionLaw, Kind};
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
+use crate::sweep::plan::Plan;
+use crate::sweep::plan::planes_of_curves::traced_by_closed_form;
 use crate::sweep::plan::tile::index_of;
-use crate::sweep::plan::{Plan, traced_by_closed_form};
 
 /// Steps of the search for breakpoints along a parameter that is no gain.
 const SCAN_STEPS: usize = 4096;
@@ -58,12 +59,25 @@ pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: 
 /// # Errors
 /// When a parameter is outside the model's range.
 pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelError> {
-    let Some((p, q)) = plan.boundary_plane else {
-        return Ok(BoundaryPlane {
+    match plan.boundary_plane {
+        Some(plane) => trace_spanned(plan, plane, index),
+        None => Ok(BoundaryPlane {
             index: index.to_vec(),
             curves: Vec::new(),
-        });
-    };
+        }),
+    }
+}
+
+/// Traces the curves of the plane spanned by the axes `(p, q)` at `index` along the others, whether
+/// the plan has them traced or not. If one of the two is the delay, it is q.
+///
+/// # Errors
+/// When a parameter is outside the model's range.
+pub fn trace_spanned(
+    plan: &Plan,
+    (p, q): (usize, usize),
+    index: &[usize],
+) -> Result<BoundaryPlane, ModelError> {
     let (setting, axes) = (plan.setting(index), &plan.spec.axes);
     let window = Window {
         p: ends(axes[p].range()),

@@ -32,10 +32,7 @@ pub struct Axis {
 /// where there are fewer than two of them.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
-    let matters = |axis: &Axis| {
-        let of_start = axis.parameter.known().is_some_and(Parameter::of_start);
-        axis.len() > 1 && !of_start
-    };
+    let matters = spans_curves;
     let is_delay = |axis: &Axis| axis.parameter == Parameter::Tau;
     let is_gain =
         |axis: &Axis| axis.parameter == Parameter::AlphaV || axis.parameter == Parameter::AlphaN;
@@ -49,6 +46,14 @@ pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let q = place(&|_| true)?;
     let p = axes[..q].iter().rposition(matters)?;
     Some((p, q))
+}
+
+/// Whether an axis can be one of a plane of curves: it has two values or more, and linear stability
+/// depends on it.
+#[must_use]
+pub fn spans_curves(axis: &Axis) -> bool {
+    let of_start = axis.parameter.known().is_some_and(Parameter::of_start);
+    axis.len() > 1 && !of_start
 }
 
 /// Why values do not make an axis, in words.

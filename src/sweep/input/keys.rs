@@ -97,7 +97,8 @@ pub const SWEEP: [Key; 18] = [
     key(
         "boundaries",
         "true or false",
-        "true with fields of sliding over the delay and one more axis, up to 1000 such planes",
+        "true with fields of sliding, up to 1000 planes over the delay and one more axis; beyond \
+         the letter up to 100 planes of any two axes",
         "whether the exact boundaries of stability are traced",
     ),
     key(

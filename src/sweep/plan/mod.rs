@@ -2,11 +2,13 @@
 //!
 //! - `memory`: bounds on the memory of a run, and how many threads they allow
 //! - `pieces`: the pieces of a sweep, its shards, and what is still to be computed
+//! - `planes_of_curves`: the planes in which crossing curves are traced, or why there are none
 //! - `tile`: rectangular blocks of cells
 //! - `tile_size`: the size of tiles, and where lines may be cut
 
 pub mod memory;
 pub mod pieces;
+pub mod planes_of_curves;
 pub mod tile;
 mod tile_size;
 
@@ -15,12 +17,13 @@ use std::borrow::Cow;
 use sha2::{Digest, Sha256};
 
 use self::pieces::{Piece, Pieces};
+use self::planes_of_curves::NoBoundaries;
 use self::tile::{Tile, TileGrid};
 pub use self::tile_size::BLOCK_OF_DELAYS;
 use self::tile_size::{block, cells_per_tile, tile_shape};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
-use crate::sweep::input::axis::{Axis, plane_of_curves};
+use crate::sweep::input::axis::Axis;
 use crate::sweep::input::basin::Basin;
 use crate::sweep::input::best_plane::gain_plane;
 use crate::sweep::input::law_kind::LawKind;
@@ -37,10 +40,6 @@ pub const MOST_CELLS: u64 = 10_000_000_000_000;
 pub const MOST_TILES: usize = 1 << 21;
 /// The most planes of curves and of best settings.
 const MOST_PLANES: u64 = 1_000_000;
-/// The most planes whose crossing curves are traced without being asked for.
-const PLANES_TRACED_UNASKED: u64 = 1000;
-/// The most planes traced without being asked for where every curve is followed step by step.
-const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.
 #[derive(Debug, Clone)]
@@ -88,7 +87,7 @@ impl Plan {
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
         let tile_shape = tile_shape(&shape, tau_axis, block(&spec), cells_per_tile);
-        let boundary_plane = boundary_plane(&spec);
+        let boundary_plane = planes_of_curves::of(&spec).ok();
         let tiles = TileGrid::new(shape, tile_shape);
         if tiles.len() > MOST_TILES {
             return Err(SpecError::whole(format!(
@@ -162,6 +161,12 @@ impl Plan {
             }
             None => 0,
         }
+    }
+
+    /// Why no crossing curves are traced; none where they are.
+    #[must_use]
+    pub fn no_boundaries(&self) -> Option<NoBoundaries> {
+        planes_of_curves::of(&self.spec).err()
     }
 
     /// Number of planes in which the best setting is searched for.
@@ -329,34 +334,4 @@ fn put_numbers(hash: &mut Sha256, values: &[f64]) {
 #[must_use]
 pub fn in_hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
-}
-
-/// The plane of crossing curves; none where there is no such plane, or none is wanted.
-fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, q) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
-    let planes: u64 = spec
-        .axes
-        .iter()
-        .enumerate()
-        .filter(|&(i, _)| i != p && i != q)
-        .map(|(_, axis)| axis.len() as u64)
-        .product();
-    let asked = spec
-        .boundaries
-        .or((!spec.degrees_of_stability.is_empty()).then_some(true));
-    let most = match (traced_by_closed_form(spec, q), spec.beyond_letter()) {
-        (true, _) => PLANES_TRACED_UNASKED,
-        (false, true) => PLANES_WALKED_UNASKED,
-        // In the letter's own planes without the delay, curves are traced only when asked for.
-        (false, false) => 0,
-    };
-    let wanted = asked.unwrap_or(planes <= most);
-    wanted.then_some((p, q))
-}
-
-/// Whether the curves in planes with the second axis `q` come from the closed form for the letter's
-/// lines of delays.
-#[must_use]
-pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
-    spec.axes[q].parameter == Parameter::Tau && !spec.beyond_letter()
 }
