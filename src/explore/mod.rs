@@ -6,7 +6,7 @@
 //! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
 //!   [`along_delay`]: over its delays
 //! - [`system_point`]: the same for a system from a file
-//! - [`margin_kind`]: whether such a distance is finite, infinite or unknown
+//! - [`margin_kind`]: whether a distance to a change of stability is finite, infinite or unknown
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding

@@ -118,8 +118,8 @@ pub(super) fn map_file(page: &mut String) {
         "Exact curves in every plane of two parameters (PARAMETER and SECOND below, which is \
          `tau` in planes with the delay), as contiguous ragged arrays of CF: curve after curve, \
          vertex after vertex. The axes outside of the plane stand in it once for every curve, and \
-         with `corner_` before the name once for every corner. In planes without `tau` the words of \
-         `stable_side` name both parameters: smaller_PARAMETER, smaller_SECOND, neither, \
+         with `corner_` before the name once for every corner. In planes without `tau` the words \
+         of `stable_side` name both parameters: smaller_PARAMETER, smaller_SECOND, neither, \
          larger_SECOND, larger_PARAMETER.",
     );
     let rows = CurveRows::described().unwrap_or_default().into_iter();
