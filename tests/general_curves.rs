@@ -16,6 +16,7 @@ use slipmap::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use slipmap::linear::general::curves::trace;
 use slipmap::linear::general::{Polynomial, RootCounter, Setting, System, SystemPlane};
 use slipmap::model::Groups;
+use slipmap::model::stop::Stop;
 
 fn polynomial(coefficients: &[f64]) -> Polynomial {
     Polynomial::new(coefficients).unwrap()
@@ -195,7 +196,8 @@ fn the_letters_curves() {
             };
             let window = Window { p, q: 0.5..=12.0 };
             let crossings = |p: f64| Crossings::of(groups_at(p));
-            let expected = trace_letter(crossings, &breakpoints, &window).unwrap();
+            let expected =
+                trace_letter(crossings, &breakpoints, &window, &Stop::default()).unwrap();
             let name = format!("letter b = {b}, velocity {velocity}");
             let curves = lines(&name, &window, &|p| letter(groups_at(p), 0.0, 0.0));
             let near = |v: &Vertex, side: StableSide, pieces: &[CurvePiece]| {
@@ -386,7 +388,8 @@ fn degrees_of_stability() {
     };
     let groups_at = |a_v: f64| (Groups::new(-0.1, a_v, 0.0), 1.0);
     for sigma in [0.01, 0.05, 0.2] {
-        let expected = slipmap::linear::decay::trace(groups_at, sigma, &window).unwrap();
+        let expected =
+            slipmap::linear::decay::trace(groups_at, sigma, &window, &Stop::default()).unwrap();
         let at = |p: f64, tau: f64| setting(letter(groups_at(p).0, 0.0, 0.0), tau);
         let curves = trace(&SystemPlane::of_lines(&at, &window), sigma).unwrap();
         assert!(!curves.pieces.is_empty(), "{sigma}");

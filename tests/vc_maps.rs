@@ -13,6 +13,7 @@ use program::{Folder, err, out};
 use serde_json::Value;
 use slipmap::critical::GRAZE_PRECISION;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
+use slipmap::model::stop::Stop;
 use slipmap::store::MapFile;
 use slipmap::store::source::InMemory;
 use slipmap::sweep::events::Attended;
@@ -360,6 +361,7 @@ fn a_stop_is_heeded_between_cells() {
     );
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     let mut worker = engine::Worker::new(&plan);
+    let stop = Stop::when(&stop);
     assert!(!worker.compute_until(&plan.tiles.tile(0), &stop));
 }
 

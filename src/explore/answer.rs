@@ -16,7 +16,7 @@ use super::problem::Problem;
 use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
-use crate::slip::stop::Stop;
+use crate::model::stop::Stop;
 use crate::sweep::input::command::{command_line, vc_command};
 use crate::sweep::input::point_file::{PointOf, PointSpec};
 use crate::sweep::plan::memory;
@@ -154,8 +154,8 @@ impl Asked {
         }
     }
 
-    /// The bytes of the answer, of [`Request::content_type`]. `stop` is checked between the steps
-    /// of a motion and the tiles of a chart.
+    /// The bytes of the answer, of [`Request::content_type`]. `stop` is checked all along: within
+    /// motions and curves, between cells, and between counts of roots.
     ///
     /// # Errors
     /// When it cannot be computed, or is stopped.
@@ -173,8 +173,13 @@ impl Asked {
                     roots: ROOTS,
                     line: None,
                 };
+                let stop = Stop::when(stop);
+                let answer = Point::at_until(setting, wanted, &stop)?;
+                if stop.is_set() {
+                    return Err(Problem::stopped());
+                }
                 json(&WithCommand {
-                    answer: Point::at(setting, wanted)?,
+                    answer,
                     command: command_line("point", setting, |p| setting.uses(p))
                         .map(|command| format!("{command} --roots={ROOTS}")),
                 })

@@ -6,6 +6,7 @@ use super::finite;
 use super::stability::Stability;
 use crate::linear::margins::{Limits, Margins as Search, Radius};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 use crate::sweep::cells::margins::Around;
 use crate::sweep::{Parameter, Setting};
 
@@ -107,7 +108,15 @@ impl Margins {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn at(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
-        let around = Around::of(setting, decay)?;
+        Self::at_until(setting, decay, &Stop::default())
+    }
+
+    /// As [`Margins::at`]. Once `stop` is set, the answer comes soon but is meaningless.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn at_until(setting: &Setting, decay: f64, stop: &Stop) -> Result<Self, ModelError> {
+        let around = Around::of(setting, decay)?.heeding(stop);
         let mut margins = Self {
             decays: around.stable(),
             ..Self::lost(decay)

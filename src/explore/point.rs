@@ -6,6 +6,7 @@ use super::finite;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 use crate::sweep::{LinearModel, Parameter, Setting};
 
 /// Linear stability at a point, in the units of its setting.
@@ -40,15 +41,23 @@ impl Point {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn at(setting: &Setting, wanted: Wanted) -> Result<Self, ModelError> {
+        Self::at_until(setting, wanted, &Stop::default())
+    }
+
+    /// As [`Point::at`]. Once `stop` is set, the answer comes soon but is meaningless.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn at_until(setting: &Setting, wanted: Wanted, stop: &Stop) -> Result<Self, ModelError> {
         let sliding = setting.sliding_point()?;
         let (model, time_unit) = setting.linear()?;
         let tau = setting.get(Parameter::Tau);
-        let stability = Stability::of(&model, time_unit, tau, wanted);
+        let stability = Stability::of(&model, (time_unit, tau), wanted, stop);
         let margins = match &model {
             LinearModel::General(_) if setting.has_state() => {
                 Margins::of_stability(&stability, tau)
             }
-            _ => Margins::at(setting, 0.0)?,
+            _ => Margins::at_until(setting, 0.0, stop)?,
         };
         Ok(Self {
             mu_prime: sliding.mu_prime,

@@ -14,6 +14,7 @@ use crate::linear::spectrum::Incomplete;
 use crate::linear::stable_delays::StableInterval;
 use crate::linear::{Crossings, Direction, MarginalTolerance};
 use crate::model::Groups;
+use crate::model::stop::Stop;
 use crate::sweep::LinearModel;
 
 /// The most stable intervals. Near a tangency there can be millions; the answer says if some are
@@ -137,14 +138,23 @@ pub struct Wanted {
 }
 
 impl Stability {
-    /// The stability of a linear model with the unit of time `time_unit`, at the delay `tau`.
+    /// The stability of a linear model with the unit of time `time_unit`, at the delay `tau`. Once
+    /// `stop` is set, the answer comes soon but is meaningless.
     #[must_use]
-    pub fn of(model: &LinearModel, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
+    pub fn of(
+        model: &LinearModel,
+        (time_unit, tau): (f64, f64),
+        wanted: Wanted,
+        stop: &Stop,
+    ) -> Self {
+        let at = (time_unit, tau);
         let mut stability = match model {
             LinearModel::Letter(groups) => Self::of_letter(*groups, time_unit, tau, wanted),
-            LinearModel::General(system) => Self::of_system(system, time_unit, tau, wanted),
+            LinearModel::General(system) => Self::of_system(system, at, wanted, stop),
         };
-        stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
+        if !stop.is_set() {
+            stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
+        }
         stability
     }
 
@@ -178,9 +188,14 @@ impl Stability {
         }
     }
 
-    fn of_system(system: &System, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
+    fn of_system(
+        system: &System,
+        (time_unit, tau): (f64, f64),
+        wanted: Wanted,
+        stop: &Stop,
+    ) -> Self {
         let line = DelayLine::of(system);
-        let counter = RootCounter::new(system);
+        let counter = RootCounter::new(system).heeding(stop);
         let at = tau / time_unit;
         let found = GeneralSpectrum::at(&counter, &line, at, wanted.roots.into());
         let line = line.in_physical_time(time_unit);

@@ -8,6 +8,7 @@ use super::finite;
 use super::margin_kind::MarginKind;
 use super::stability::{Stability, Wanted};
 use crate::linear::general::Class;
+use crate::model::stop::Stop;
 use crate::sweep::LinearModel;
 use crate::sweep::input::system::{Evaluation, SystemModel, Undefined};
 
@@ -68,7 +69,7 @@ impl SystemPoint {
         let line_of_delays = !model.depends_on_delay();
         let feedback = model.is_feedback();
         let system = LinearModel::General(Box::new(system));
-        let mut stability = Stability::of(&system, 1.0, at.tau, wanted);
+        let mut stability = Stability::of(&system, (1.0, at.tau), wanted, &Stop::default());
         if !line_of_delays {
             forget_other_delays(&mut stability);
         }

@@ -13,6 +13,7 @@ use super::crossing::{Crossings, Direction, discriminant, frequency_product};
 use super::roots::bisect;
 use super::stretch::Stretch;
 use crate::model::Groups;
+use crate::model::stop::Stop;
 
 /// A segment is fine enough when its middle is nearer to its chord than this part of the window.
 pub(super) const FLATNESS: f64 = 2e-4;
@@ -199,6 +200,7 @@ pub fn scan_breakpoints(
 ///
 /// `crossings_at` gives the crossings of the line at p; `breakpoints` are the values of p at which
 /// their number changes. Additional values do no harm, and values outside the window are ignored.
+/// Once `stop` is set, the answer comes soon but is meaningless.
 ///
 /// # Errors
 /// When more curves lie in the window than can be traced.
@@ -206,6 +208,7 @@ pub fn trace(
     crossings_at: impl Fn(f64) -> Crossings,
     breakpoints: &[f64],
     window: &Window,
+    stop: &Stop,
 ) -> Result<PlaneCurves, TooManyCurves> {
     let mut ends: Vec<f64> = breakpoints
         .iter()
@@ -225,7 +228,7 @@ pub fn trace(
     ends.dedup_by(|next, kept| *next - *kept <= sliver);
     let mut curves = PlaneCurves::default();
     for pair in ends.windows(2) {
-        Stretch::new(&crossings_at, pair[0], pair[1], window).trace(&mut curves)?;
+        Stretch::new(&crossings_at, pair[0], pair[1], window).trace(&mut curves, stop)?;
     }
     Ok(curves)
 }
@@ -257,7 +260,7 @@ mod tests {
         window: &Window,
     ) -> PlaneCurves {
         let at = |p: f64| Crossings::of(groups_at(p));
-        let curves = trace(at, breakpoints, window).unwrap();
+        let curves = trace(at, breakpoints, window, &Stop::default()).unwrap();
         for piece in &curves.pieces {
             assert!(piece.vertices.len() >= 2);
             for v in &piece.vertices {
@@ -456,6 +459,7 @@ mod tests {
             q: 0.0..=1e7,
         };
         let at = |p: f64| Crossings::of(groups_at(p));
-        assert!(trace(at, &breakpoints, &window).unwrap_err().arcs > MOST_ARCS);
+        let refused = trace(at, &breakpoints, &window, &Stop::default());
+        assert!(refused.unwrap_err().arcs > MOST_ARCS);
     }
 }

@@ -100,4 +100,8 @@ pub trait Plane {
 
     /// Bounds of the roots on the line, for steps along q.
     fn band(&self, p: f64, q: f64, sigma: f64) -> Band;
+
+    /// Whether nobody waits for the curves any more: then following them ends soon, and what was
+    /// found means nothing.
+    fn stopped(&self) -> bool;
 }

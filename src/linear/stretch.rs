@@ -9,6 +9,7 @@ use super::curves::{
 };
 use super::roots::bisect;
 use crate::model::elementary::{power, sin};
+use crate::model::stop::Stop;
 
 /// Nodes at which each arc is examined for corners and for where it enters and leaves the window.
 const NODES: usize = 192;
@@ -124,19 +125,20 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         from.min(to)..to
     }
 
-    pub(super) fn trace(&self, curves: &mut PlaneCurves) -> Result<(), TooManyCurves> {
+    /// Adds the pieces and corners of the stretch; once `stop` is set, only some of them.
+    pub(super) fn trace(&self, curves: &mut PlaneCurves, stop: &Stop) -> Result<(), TooManyCurves> {
         let ranges = [Arm::Upper, Arm::Lower].map(|arm| self.branches(arm));
         let arcs = ranges.iter().map(|r| r.end - r.start).sum();
         if arcs > MOST_ARCS {
             return Err(TooManyCurves { arcs, corners: 0 });
         }
-        let cuts = self.cuts(ranges[0].clone());
+        let cuts = self.cuts(ranges[0].clone(), stop);
         let corners = (curves.corners.len() + cuts.len()) as u64;
         if corners > MOST_CORNERS {
             return Err(TooManyCurves { arcs, corners });
         }
         for (arm, range) in [Arm::Upper, Arm::Lower].into_iter().zip(ranges) {
-            for branch in range {
+            for branch in range.take_while(|_| !stop.is_set()) {
                 self.trace_arc(arm, branch, &cuts, curves);
             }
         }
@@ -147,11 +149,11 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
     }
 
     /// All corners of the stretch, from changes in the order of delays between neighbouring nodes.
-    fn cuts(&self, upper_branches: std::ops::Range<u64>) -> Vec<Cut> {
+    fn cuts(&self, upper_branches: std::ops::Range<u64>, stop: &Stop) -> Vec<Cut> {
         let mut cuts = Vec::new();
         let (s, nodes) = self.corner_nodes();
         for branch in upper_branches {
-            if cuts.len() as u64 > MOST_CORNERS {
+            if cuts.len() as u64 > MOST_CORNERS || stop.is_set() {
                 break;
             }
             let places: Vec<Option<u64>> = nodes

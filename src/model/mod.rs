@@ -22,6 +22,7 @@
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
 //! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical
 //!   stiffness
+//! - `stop`: a flag that ends computations nobody waits for any more
 //! - `table`: a monotone cubic curve through measured points
 
 pub mod elementary;
@@ -32,6 +33,7 @@ mod groups;
 pub mod known_cases;
 mod oscillator;
 pub mod rate_and_state;
+pub mod stop;
 pub mod table;
 
 pub use error::{ModelError, Shown};

@@ -7,7 +7,7 @@
 //! - [`sliding`]: linear stability of sliding
 //! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
-//! - [`stop`]: a flag that ends motions
+//! - [`stop`]: a flag that ends motions, from below
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
 //! - `friction_series`: the friction force of each law as a polynomial in time
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
@@ -26,6 +26,7 @@ pub mod outcome;
 pub mod series;
 pub mod sliding;
 pub mod step;
-pub mod stop;
 mod table_series;
 pub mod watch;
+
+pub use crate::model::stop;

@@ -44,8 +44,8 @@ use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
 use super::series::{MOST_ORDER, value};
 use super::step::{Control, Step};
-use super::stop::Stop;
 use crate::model::elementary::ln;
+use crate::model::stop::Stop;
 
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -158,6 +158,11 @@ impl Motion {
     #[must_use]
     pub fn heeding(self, stop: Stop) -> Self {
         Self { stop, ..self }
+    }
+
+    /// From now on it ends once `stop` is set, as in [`Motion::heeding`].
+    pub fn heed(&mut self, stop: &Stop) {
+        self.stop.clone_from(stop);
     }
 
     /// Whether it was told to stop; its state is then NaN.

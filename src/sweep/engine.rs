@@ -9,14 +9,15 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::cells::best::{BestSettings, best_of_plane, best_plane};
-use super::cells::boundaries::{BoundaryPlane, plane, trace_plane};
+use super::cells::best::{BestSettings, best_of_plane_until, best_plane};
+use super::cells::boundaries::{BoundaryPlane, plane, trace_plane_until};
 pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
 pub use super::cells::worker::Worker;
 use super::events::{Attended, Event, Observer};
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 
 /// Pieces that may wait for the sink, per thread.
 const PIECES_WAITING: usize = 2;
@@ -261,9 +262,10 @@ fn work<C: Encode>(
     todo: &Todo,
     mut encoder: C,
     sender: &SyncSender<Sent<C::Encoded>>,
-    stop: &AtomicBool,
+    stop: &Arc<AtomicBool>,
 ) {
     let mut worker = Worker::new(plan);
+    let stop = &Stop::when(stop);
     while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, stop) {
         if sender.send(sent).is_err() {
             break;
@@ -271,23 +273,31 @@ fn work<C: Encode>(
     }
 }
 
-/// Computes the next piece; none when no piece is left or `stop` is set.
+/// Computes the next piece; none when no piece is left, or once `stop` has cut it short.
 fn next<C: Encode>(
     plan: &Plan,
     todo: &Todo,
     worker: &mut Worker,
     encoder: &mut C,
-    stop: &AtomicBool,
+    stop: &Stop,
 ) -> Option<Sent<C::Encoded>> {
-    if stop.load(Ordering::Relaxed) {
+    if stop.is_set() {
         return None;
     }
     let piece = todo.next()?;
     let encoded = match piece {
-        Piece::Curves(n) => trace_plane(plan, &plane(plan, n))
-            .map(|plane| encoder.encode(piece, Computed::Curves(&plane))),
+        Piece::Curves(n) => {
+            let traced = trace_plane_until(plan, &plane(plan, n), stop);
+            if stop.is_set() {
+                return None;
+            }
+            traced.map(|plane| encoder.encode(piece, Computed::Curves(&plane)))
+        }
         Piece::Best(n) => {
-            let found = best_of_plane(plan, &best_plane(plan, n));
+            let found = best_of_plane_until(plan, &best_plane(plan, n), stop);
+            if stop.is_set() {
+                return None;
+            }
             Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
         }
         Piece::Tile(n) => {
@@ -309,7 +319,8 @@ fn here<S: Sink>(
 ) -> Result<u64, RunError<S::Error>> {
     let Attended { observer, stop } = attended;
     let (mut worker, mut encoder, mut received) = (Worker::new(plan), sink.encoder(), 0);
-    while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, stop) {
+    let stop = Stop::when(stop);
+    while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, &stop) {
         take(plan, sent, sink, observer)?;
         received += 1;
     }

@@ -10,6 +10,7 @@ use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accu
 use crate::linear::general::{Class, DelayLine, RightOf, RootCounter, System};
 use crate::linear::spectrum::RootFinder;
 use crate::model::elementary::norm;
+use crate::model::stop::Stop;
 
 /// Steps of difference quotients, over the scale on which D changes. They are of fourth order, so
 /// that both their own error and rounding stay near 1e-12.
@@ -226,14 +227,15 @@ impl Family for General<'_> {
 
     /// The gains between which the number of crossings changes, halved until they are one, and 0,
     /// where control may vanish.
-    fn breakpoints(&self, gains: &[f64]) -> Vec<f64> {
+    fn breakpoints(&self, gains: &[f64], stop: &Stop) -> Vec<f64> {
         let mut points = vec![0.0];
         if self.lines {
             let counted: Vec<_> = gains
                 .iter()
+                .take_while(|_| !stop.is_set())
                 .map(|&gain| (gain, self.crossings(gain)))
                 .collect();
-            for pair in counted.windows(2) {
+            for pair in counted.windows(2).take_while(|_| !stop.is_set()) {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
                 if before != after {
                     points.push(self.breakpoint((from, to), before));

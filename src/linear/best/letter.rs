@@ -10,6 +10,7 @@ use crate::linear::equation::Equation;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::linear::sensitivity::Sensitivity;
 use crate::model::Groups;
+use crate::model::stop::Stop;
 
 /// The gain that is searched; the other one stays as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +99,7 @@ impl Family for Letter {
 
     /// The gains at which crossings change their number, and 0, where control may vanish; see
     /// [`crate::linear::gains`].
-    fn breakpoints(&self, _gains: &[f64]) -> Vec<f64> {
+    fn breakpoints(&self, _gains: &[f64], _stop: &Stop) -> Vec<f64> {
         let Groups { b, a_v, a_n } = self.fixed;
         let mut points = match self.gain {
             SearchedGain::Velocity => velocity_gain_breakpoints(b, a_n),

@@ -47,6 +47,7 @@ use regions::{Stretches, stable_regions};
 use search::Evaluator;
 
 use crate::model::elementary::power;
+use crate::model::stop::Stop;
 
 /// Regions whose optimum is looked for; the others are counted.
 pub const MOST_REGIONS: usize = 64;
@@ -202,16 +203,29 @@ pub struct Best {
 /// The settings of fastest decay in the box of `search`.
 ///
 /// The box must be finite, its ranges ordered and the delays not negative.
+///
+/// # Panics
+/// Never.
 #[must_use]
 pub fn best(search: &Search<impl Family>) -> Best {
-    let mut evaluator = Evaluator::default();
-    let mut found = stable_regions(search);
+    best_until(search, &Stop::default()).expect("nothing stops it")
+}
+
+/// As [`best`]; none once `stop` is set.
+#[must_use]
+pub fn best_until(search: &Search<impl Family>, stop: &Stop) -> Option<Best> {
+    let mut evaluator = Evaluator::heeding(stop);
+    let mut found = stable_regions(search, stop);
     let regions_left_out = found.len().saturating_sub(MOST_REGIONS);
     found.truncate(MOST_REGIONS);
     let regions: Vec<Region> = found
         .iter()
+        .take_while(|_| !stop.is_set())
         .map(|stretches| region(&mut evaluator, search, stretches))
         .collect();
+    if stop.is_set() {
+        return None;
+    }
     let overall = regions
         .iter()
         .map(|region| &region.best)
@@ -225,11 +239,12 @@ pub fn best(search: &Search<impl Family>) -> Best {
             }
             least
         });
-    Best {
+    let found = Best {
         overall,
         regions,
         regions_left_out,
-    }
+    };
+    (!stop.is_set()).then_some(found)
 }
 
 /// A place from which to go down, the abscissa there and the length scales around it.

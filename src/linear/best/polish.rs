@@ -36,6 +36,7 @@ pub(super) fn polished(
     let edge = search.on_edge(place);
     conditions(evaluator.roots(search, place, CANDIDATES), edge)
         .into_iter()
+        .take_while(|_| !evaluator.stopped())
         .filter_map(|condition| solve(&condition, search, place, frame, edge))
         .map(|(at, solved)| optimum(&solved, search, at, edge))
         .find(|found| found.certified && found.abscissa <= abscissa + 1e-9 * (1.0 + abscissa.abs()))
@@ -49,7 +50,10 @@ pub(super) fn unpolished<F: Family>(
 ) -> Optimum {
     let rightmost = evaluator.roots(search, place, 1).first();
     let frequency = rightmost.map(|root| root.lambda.im);
-    let margin = decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0));
+    let margin = match evaluator.stopped() {
+        true => None,
+        false => decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0)),
+    };
     let accumulating = search.family.setting(place).is_some_and(|setting| {
         let essential = F::equation(&setting).essential_abscissa(place.tau);
         beside_essential(abscissa, essential)

@@ -7,6 +7,7 @@
 
 use super::search::{Family, Place, Search};
 use crate::model::elementary::power;
+use crate::model::stop::Stop;
 
 /// Gains sampled evenly over the box.
 const EVEN_LINES: usize = 192;
@@ -72,12 +73,16 @@ impl Stretch {
 /// The stretches of one region, by rising gain and delay. Never empty.
 pub(super) type Stretches = Vec<Stretch>;
 
-/// All regions of the box that a sampled gain crosses, by their shortest delay.
-pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
-    let gains = sampled_gains(search);
+/// All regions of the box that a sampled gain crosses, by their shortest delay; only some of them
+/// once `stop` is set.
+pub(super) fn stable_regions(search: &Search<impl Family>, stop: &Stop) -> Vec<Stretches> {
+    let gains = sampled_gains(search, stop);
     let lines: Vec<Stretches> = gains
         .iter()
-        .map(|&gain| search.family.stretches(gain, search.delays))
+        .map(|&gain| match stop.is_set() {
+            true => Stretches::new(),
+            false => search.family.stretches(gain, search.delays),
+        })
         .collect();
     let offsets: Vec<usize> = lines
         .iter()
@@ -86,7 +91,8 @@ pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
         })
         .collect();
     let mut groups = Sets::new(lines.iter().map(Vec::len).sum());
-    for (i, j) in neighbours(&gains, search.gains.1 - search.gains.0) {
+    let pairs = neighbours(&gains, search.gains.1 - search.gains.0);
+    for (i, j) in pairs.take_while(|_| !stop.is_set()) {
         for (p, here) in lines[i].iter().enumerate() {
             for (q, there) in lines[j].iter().enumerate() {
                 if here.touches(there) {
@@ -121,7 +127,7 @@ fn neighbours(gains: &[f64], width: f64) -> impl Iterator<Item = (usize, usize)>
 }
 
 /// The gains at which stable delays are asked for, rising.
-fn sampled_gains(search: &Search<impl Family>) -> Vec<f64> {
+fn sampled_gains(search: &Search<impl Family>, stop: &Stop) -> Vec<f64> {
     let (from, to) = search.gains;
     let width = to - from;
     if width == 0.0 {
@@ -130,7 +136,7 @@ fn sampled_gains(search: &Search<impl Family>) -> Vec<f64> {
     let mut gains: Vec<f64> = (0..=EVEN_LINES)
         .map(|i| from + width * (i as f64 / EVEN_LINES as f64))
         .collect();
-    for breakpoint in search.family.breakpoints(&gains) {
+    for breakpoint in search.family.breakpoints(&gains, stop) {
         for step in 1..=LINES_AT_BREAKPOINT {
             let by = width * power(CLOSER, step);
             gains.extend([breakpoint - by, breakpoint + by]);

@@ -18,6 +18,7 @@ use super::{Best, Start, far_apart, lattice};
 use crate::linear::margins::{Changes, Setting, radius_up_to};
 use crate::linear::spectrum::RootFinder;
 use crate::model::Groups;
+use crate::model::stop::Stop;
 
 /// The radius, in units of the frame, to which a descent goes.
 const FINE: f64 = 1e-6;
@@ -141,7 +142,7 @@ pub fn worst_around(search: &Search<Letter>, gain: f64, tau: f64, spread: f64) -
 pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robust> {
     let mut worst = Worst::new(search, spread);
     // No setting of a region is better than its best one.
-    let stretches = stable_regions(search);
+    let stretches = stable_regions(search, &Stop::default());
     let mut regions: Vec<_> = best.regions.iter().zip(&stretches).collect();
     regions.sort_by(|(p, _), (q, _)| p.best.abscissa.total_cmp(&q.best.abscissa));
     let mut found: Option<(Start, f64)> = None;

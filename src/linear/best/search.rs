@@ -6,6 +6,7 @@ use super::regions::Stretch;
 use crate::linear::equation::Equation;
 use crate::linear::newton::Root;
 use crate::linear::spectrum::RootFinder;
+use crate::model::stop::Stop;
 
 /// A characteristic equation over the plane of a gain and the delay.
 ///
@@ -42,8 +43,8 @@ pub trait Family {
     }
 
     /// The gains at which the stable delays may begin or end all at once. In no order, not all of
-    /// them between those of `gains`.
-    fn breakpoints(&self, gains: &[f64]) -> Vec<f64>;
+    /// them between those of `gains`; only some of them once `stop` is set.
+    fn breakpoints(&self, gains: &[f64], stop: &Stop) -> Vec<f64>;
 
     /// The stable delays of a gain between the shortest and the longest of `delays`, by growing
     /// delay, without what the box only touches.
@@ -126,12 +127,29 @@ impl<F> Search<F> {
 #[derive(Debug, Default)]
 pub(super) struct Evaluator {
     finder: RootFinder,
+    stop: Stop,
 }
 
 impl Evaluator {
+    /// An evaluator that knows nothing of any place once `stop` is set.
+    pub(super) fn heeding(stop: &Stop) -> Self {
+        Self {
+            finder: RootFinder::default(),
+            stop: stop.clone(),
+        }
+    }
+
+    /// Whether nobody waits for the search any more.
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.is_set()
+    }
+
     /// The largest real part of a root, right of which none is missed; infinite where roots could
     /// not be found, so that no search goes there.
     pub(super) fn abscissa(&mut self, search: &Search<impl Family>, place: Place) -> f64 {
+        if self.stopped() {
+            return f64::INFINITY;
+        }
         search.family.abscissa(&mut self.finder, place)
     }
 
@@ -143,7 +161,8 @@ impl Evaluator {
         place: Place,
         wanted: u64,
     ) -> &[Root] {
-        let Some(setting) = search.family.setting(place) else {
+        let setting = search.family.setting(place).filter(|_| !self.stopped());
+        let Some(setting) = setting else {
             return &[];
         };
         self.finder

@@ -8,6 +8,7 @@ use crate::linear::curves::{Vertex, Window};
 use crate::linear::plane::{Band, Local, Plane, Value};
 use crate::model::Groups;
 use crate::model::elementary::{exp, power};
+use crate::model::stop::Stop;
 
 /// Step of the central difference in p, over the width of the window.
 const DIFFERENCE: f64 = 1e-6;
@@ -20,6 +21,7 @@ pub(super) struct LetterPlane<'a> {
     /// Groups and time unit at a value of the parameter inside the window.
     pub groups_at: &'a dyn Fn(f64) -> (Groups, f64),
     pub window: &'a Window,
+    pub stop: &'a Stop,
 }
 
 impl LetterPlane<'_> {
@@ -127,5 +129,9 @@ impl Plane for LetterPlane<'_> {
             highest: upper,
             enough: (upper - lower) * tau > TURNS_ENOUGH * std::f64::consts::TAU,
         }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.is_set()
     }
 }

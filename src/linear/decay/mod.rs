@@ -46,6 +46,7 @@ use super::curves::{
 };
 use super::plane::Plane;
 use crate::model::Groups;
+use crate::model::stop::Stop;
 use corner::Turn;
 use letter::LetterPlane;
 use plane::{DecayPlane, Family};
@@ -68,7 +69,8 @@ const SAME_FREQUENCY: f64 = 1e-3;
 /// τ, ω and `sigma` > 0 are in the units of that time. Every piece bounds the region: `stable_side`
 /// is the side on which all roots are left of the line. `direction` says how the root on the line
 /// moves as the delay grows, `branch` is the number of whole turns of ωτ at the middle of the
-/// piece. Along a piece p only grows or only falls. What may be missed: see the module.
+/// piece. Along a piece p only grows or only falls. What may be missed: see the module. Once `stop`
+/// is set, the answer comes soon but is meaningless.
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.
@@ -76,10 +78,12 @@ pub fn trace(
     groups_at: impl Fn(f64) -> (Groups, f64),
     sigma: f64,
     window: &Window,
+    stop: &Stop,
 ) -> Result<PlaneCurves, TooManyCurves> {
     let plane = LetterPlane {
         groups_at: &groups_at,
         window,
+        stop,
     };
     trace_in(&plane, sigma)
 }
@@ -100,6 +104,9 @@ pub fn trace_in(plane: &impl Plane, sigma: f64) -> Result<PlaneCurves, TooManyCu
         },
     };
     for seed in tracer.plane.seeds() {
+        if plane.stopped() {
+            break;
+        }
         if !tracer.found.holds(&seed) {
             tracer.follow(&seed)?;
         }

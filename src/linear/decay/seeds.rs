@@ -67,7 +67,7 @@ impl<P: Plane> DecayPlane<'_, P> {
                 });
             }
         }
-        for i in 0..=COLUMNS {
+        for i in (0..=COLUMNS).take_while(|_| !self.plane.stopped()) {
             self.seeds_on_column(i, &mut seeds);
         }
         seeds
@@ -78,7 +78,7 @@ impl<P: Plane> DecayPlane<'_, P> {
         let (start, end) = (self.edge(false), self.edge(true));
         let [_, delay] = self.plane.delays();
         let (mut q, mut decays) = (start, self.decays(p, start));
-        while q < end {
+        while q < end && !self.plane.stopped() {
             let band = self.plane.band(p, q, self.sigma);
             if band.enough && !decays {
                 return;

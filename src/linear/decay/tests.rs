@@ -79,7 +79,7 @@ fn inner(piece: &CurvePiece) -> impl Iterator<Item = &Vertex> {
 }
 
 fn check(groups_at: GroupsAt, window: &Window, sigma: f64) -> PlaneCurves {
-    let curves = trace(groups_at, sigma, window).unwrap();
+    let curves = trace(groups_at, sigma, window, &Stop::default()).unwrap();
     for piece in &curves.pieces {
         for v in &piece.vertices {
             let (groups, unit) = groups_at(v.p);
@@ -141,7 +141,7 @@ fn no_boundary_is_missing() {
     let mut changes = 0;
     for (groups_at, window) in planes() {
         for sigma in SIGMAS {
-            let curves = trace(groups_at, sigma, &window).unwrap();
+            let curves = trace(groups_at, sigma, &window, &Stop::default()).unwrap();
             let segments: Vec<(Vertex, Vertex)> = curves
                 .pieces
                 .iter()
@@ -183,7 +183,8 @@ fn small_degrees_of_stability_tend_to_the_crossing_curves() {
     let groups_at = |a_n: f64| (Groups::new(-0.1, 0.0, a_n), 1.0);
     let crossings_at = |a_n: f64| Crossings::of(groups_at(a_n).0);
     let breakpoints = load_gain_breakpoints(-0.1, 0.0);
-    let limit = super::super::curves::trace(crossings_at, &breakpoints, &window).unwrap();
+    let limit =
+        super::super::curves::trace(crossings_at, &breakpoints, &window, &Stop::default()).unwrap();
     let bounding: Vec<&CurvePiece> = limit
         .pieces
         .iter()
@@ -195,7 +196,7 @@ fn small_degrees_of_stability_tend_to_the_crossing_curves() {
             segments.any(|w| distance(&window, (v.p, v.q), (w[0], w[1])) < 1e-3)
         })
     };
-    let curves = trace(groups_at, 1e-6, &window).unwrap();
+    let curves = trace(groups_at, 1e-6, &window, &Stop::default()).unwrap();
     let pieces: Vec<&CurvePiece> = curves.pieces.iter().collect();
     assert!(pieces.len() >= bounding.len());
     for v in pieces.iter().flat_map(|piece| &piece.vertices) {
@@ -210,7 +211,7 @@ fn small_degrees_of_stability_tend_to_the_crossing_curves() {
 fn corners_have_both_roots_on_the_line() {
     for (groups_at, window) in planes() {
         for sigma in SIGMAS {
-            let curves = trace(groups_at, sigma, &window).unwrap();
+            let curves = trace(groups_at, sigma, &window, &Stop::default()).unwrap();
             for corner in &curves.corners {
                 let (groups, unit) = groups_at(corner.p);
                 for (omega, _) in [corner.upper, corner.lower] {
@@ -245,7 +246,7 @@ fn loose_ends(curves: &PlaneCurves, window: &Window) -> Vec<Vertex> {
 fn boundaries_end_only_at_the_window() {
     for (groups_at, window) in planes() {
         for sigma in SIGMAS {
-            let curves = trace(groups_at, sigma, &window).unwrap();
+            let curves = trace(groups_at, sigma, &window, &Stop::default()).unwrap();
             let loose = loose_ends(&curves, &window);
             assert!(loose.is_empty(), "σ = {sigma}, {window:?}: {loose:?}");
         }
@@ -274,7 +275,7 @@ fn boundaries_end_only_at_the_window_of_random_planes() {
             q: 0.0..=number(1.0, 40.0),
         };
         let sigma = 10f64.powf(number(-3.0, 0.3));
-        let curves = trace(groups_at, sigma, &window).unwrap();
+        let curves = trace(groups_at, sigma, &window, &Stop::default()).unwrap();
         let loose = loose_ends(&curves, &window);
         assert!(
             loose.is_empty(),
@@ -288,8 +289,11 @@ fn boundaries_end_only_at_the_window_of_random_planes() {
 #[test]
 fn nothing_is_traced_twice_or_differently() {
     for (groups_at, window) in planes() {
-        let first = trace(groups_at, 0.05, &window).unwrap();
-        assert_eq!(first, trace(groups_at, 0.05, &window).unwrap());
+        let first = trace(groups_at, 0.05, &window, &Stop::default()).unwrap();
+        assert_eq!(
+            first,
+            trace(groups_at, 0.05, &window, &Stop::default()).unwrap()
+        );
         let mut middles: Vec<(f64, f64)> = first
             .pieces
             .iter()

@@ -65,6 +65,9 @@ impl<P: Plane> DecayPlane<'_, P> {
         let mut step = LONGEST;
         let mut then = start;
         for i in 1..=most_steps {
+            if self.plane.stopped() {
+                return way;
+            }
             if self.whole && i % STAGNANT == 0 {
                 if self.near_by(then, place.v) {
                     return way;

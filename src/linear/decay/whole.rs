@@ -43,7 +43,7 @@ pub fn trace_whole(
             whole: true,
         },
     };
-    for start in starts {
+    for start in starts.iter().take_while(|_| !plane.stopped()) {
         if !tracer.knows(start) {
             tracer.follow_whole(start)?;
         }

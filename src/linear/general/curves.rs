@@ -25,7 +25,8 @@ use crate::linear::plane::Plane;
 use crate::model::elementary::exp;
 
 /// Traces the curves of `plane` for the degree of stability `sigma` ≥ 0, in the unit of time of the
-/// plane: all curves for σ = 0, what bounds the region for σ > 0.
+/// plane: all curves for σ = 0, what bounds the region for σ > 0. Once the plane is stopped, the
+/// answer comes soon but is meaningless.
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.
@@ -37,6 +38,7 @@ pub fn trace(plane: &SystemPlane, sigma: f64) -> Result<PlaneCurves, TooManyCurv
             value: &at_origin,
             window: plane.window(),
             of_p: plane.has_lines(),
+            stopped: &|| plane.stopped(),
         };
         let real = pieces(plane, sigma, CurveKind::RealRoot, &level);
         curves.pieces.extend(real);
@@ -63,6 +65,7 @@ fn add_leading(plane: &SystemPlane, sigma: f64, curves: &mut PlaneCurves) {
             value: &value,
             window: plane.window(),
             of_p: plane.has_lines() && sigma == 0.0,
+            stopped: &|| plane.stopped(),
         };
         pieces(plane, sigma, CurveKind::LeadingCoefficient, &level)
     };

@@ -31,6 +31,8 @@ pub(super) struct Level<'a> {
     pub window: &'a Window,
     /// Whether the function depends on p alone.
     pub of_p: bool,
+    /// Whether nobody waits for the curves any more.
+    pub stopped: &'a dyn Fn() -> bool,
 }
 
 /// A point of a curve and the direction in which it goes on.
@@ -113,6 +115,9 @@ impl Level<'_> {
         let mut curves: Vec<Vec<Point>> = Vec::new();
         let mut steps = MOST_STEPS;
         for seed in self.seeds() {
+            if (self.stopped)() {
+                break;
+            }
             let near = |curve: &Vec<Point>| {
                 let mut segments = curve.windows(2);
                 segments.any(|s| distance(seed, s[0], s[1]) < 3.0 * FLATNESS)
@@ -157,7 +162,7 @@ impl Level<'_> {
         };
         along(&|u| [u, 0.0]);
         along(&|u| [u, 1.0]);
-        for i in 0..=GRID {
+        for i in (0..=GRID).take_while(|_| !(self.stopped)()) {
             along(&|v| [part(i), v]);
         }
         seeds
@@ -224,7 +229,7 @@ impl Level<'_> {
             return (points, false);
         };
         let (mut place, mut h) = (origin, LONGEST);
-        while *steps > 0 {
+        while *steps > 0 && !(self.stopped)() {
             *steps -= 1;
             let Some((next, taken)) = self.step(place, h, sense) else {
                 return (points, false);

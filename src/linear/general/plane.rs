@@ -11,6 +11,7 @@ use super::system::System;
 use super::turning::RightOf;
 use crate::linear::curves::{Vertex, Window};
 use crate::linear::plane::{Band, Local, Plane, Value};
+use crate::model::stop::Stop;
 
 /// Step of the central differences in p and q, over the widths of the window.
 const DIFFERENCE: f64 = 1e-6;
@@ -41,6 +42,7 @@ pub struct SystemPlane<'a> {
     window: &'a Window,
     delays: [bool; 2],
     lines: bool,
+    stop: Stop,
     last: RefCell<Option<Counted>>,
 }
 
@@ -64,8 +66,16 @@ impl<'a> SystemPlane<'a> {
             window,
             delays,
             lines: false,
+            stop: Stop::default(),
             last: RefCell::new(None),
         }
+    }
+
+    /// The same plane, but once `stop` is set nothing is counted in it any more.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let stop = stop.clone();
+        Self { stop, ..self }
     }
 
     /// A plane where q is the delay τ and nothing else depends on q: each p is a line of delays.
@@ -109,8 +119,11 @@ impl<'a> SystemPlane<'a> {
         })
     }
 
-    /// What `of` says of the roots at (p, q).
+    /// What `of` says of the roots at (p, q); none once the plane is stopped.
     fn counted<T>(&self, p: f64, q: f64, of: impl FnOnce(&RootCounter, Setting) -> T) -> Option<T> {
+        if self.stop.is_set() {
+            return None;
+        }
         let (p, inside) = self.clamped(p, q);
         // Along a line only the delay changes.
         let at = (p, if self.lines { 0.0 } else { inside });
@@ -267,5 +280,9 @@ impl Plane for SystemPlane<'_> {
             highest: 0.0,
             enough: false,
         })
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.is_set()
     }
 }

@@ -28,6 +28,7 @@ use super::system::{Class, System};
 use super::turning::{NoNumber, RightOf, Turn, Turning, WholeTurns};
 use super::zeros::Zeros;
 use crate::model::elementary::atan2;
+use crate::model::stop::Stop;
 
 /// How far the two ways to an argument may differ before neither is trusted.
 pub(super) const SAME_TURN: f64 = 1.0;
@@ -38,6 +39,7 @@ pub struct RootCounter {
     system: System,
     p: Factors,
     q: Factors,
+    stop: Stop,
 }
 
 /// A polynomial, given by its zeros.
@@ -152,13 +154,24 @@ impl RootCounter {
             system: *system,
             p: Factors::of(p),
             q: Factors::of(&q.without_open_leading()),
+            stop: Stop::default(),
         }
+    }
+
+    /// The same counter, to which every number of roots is undecided once `stop` is set.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let stop = stop.clone();
+        Self { stop, ..self }
     }
 
     /// The number of roots with Re λ > `line` at the delay `tau` ≥ 0. Real roots count once, pairs
     /// twice.
     #[must_use]
     pub fn right_of(&self, tau: f64, line: f64) -> RightOf {
+        if self.stop.is_set() {
+            return RightOf::Undecided;
+        }
         if tau == 0.0 || self.system.uncontrolled() {
             return self.without_delay(tau, line);
         }

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::plane::SystemPlane;
 use super::turning::RightOf;
-use crate::linear::crossing::Direction;
+use crate::linear::crossing::{Crossing, Direction};
 use crate::linear::curves::{MOST_ARCS, TooManyCurves, Vertex};
 use crate::linear::decay::{Across, COLUMNS, Start, on_line};
 use crate::linear::plane::Plane;
@@ -17,21 +17,28 @@ const ENCLOSED: f64 = 1e-9;
 /// Points of all curves of the imaginary axis.
 ///
 /// # Errors
-/// When one line meets more curves than can be traced.
+/// When one line meets more curves than can be traced: a piece of one passes a column once at most,
+/// and has two ends for the edges.
 pub(super) fn starts(plane: &SystemPlane) -> Result<Vec<Start>, TooManyCurves> {
     let mut starts = Vec::new();
-    for i in 0..=COLUMNS {
+    for i in (0..=COLUMNS).take_while(|_| !plane.stopped()) {
         if plane.has_lines() {
             on_line_of_delays(plane, i, &mut starts)?;
         } else {
             let (from, to) = (*plane.window().q.start(), *plane.window().q.end());
             let q = |j: usize| from + (to - from) * (j as f64 / ROWS as f64);
-            by_counts(plane, Across::Column(i), ROWS, &q, &mut starts);
+            by_counts(plane, Across::Column(i), (ROWS, 1), &q, &mut starts)?;
         }
     }
     for longest in [false, true] {
         let p = |i: usize| column(plane, i);
-        by_counts(plane, Across::Edge { longest }, COLUMNS, &p, &mut starts);
+        by_counts(
+            plane,
+            Across::Edge { longest },
+            (COLUMNS, 2),
+            &p,
+            &mut starts,
+        )?;
     }
     Ok(starts)
 }
@@ -53,13 +60,17 @@ fn on_line_of_delays(
     };
     let (from, to) = (*plane.window().q.start(), *plane.window().q.end());
     let crossings = line.crossings.iter();
-    for crossing in crossings.filter(|c| c.direction != Direction::Touch) {
-        let branches = crossing.branch_at(from / unit)..crossing.branch_at((to / unit).next_up());
-        let arcs = branches.end.saturating_sub(branches.start);
-        if arcs > MOST_ARCS {
-            return Err(TooManyCurves { arcs, corners: 0 });
-        }
-        starts.extend(branches.map(|k| Start {
+    let moving = crossings.filter(|c| c.direction != Direction::Touch);
+    let branches = |c: &Crossing| c.branch_at(from / unit)..c.branch_at((to / unit).next_up());
+    let sizes = moving.clone().map(branches);
+    let arcs = sizes.fold(0, |sum: u64, b| {
+        sum.saturating_add(b.end.saturating_sub(b.start))
+    });
+    if arcs > MOST_ARCS {
+        return Err(TooManyCurves { arcs, corners: 0 });
+    }
+    for crossing in moving {
+        starts.extend(branches(crossing).map(|k| Start {
             across: Across::Column(i),
             vertex: Vertex {
                 p,
@@ -72,15 +83,16 @@ fn on_line_of_delays(
 }
 
 /// Where the number of unstable roots changes along a line across the window; `at` gives its points
-/// in `steps` steps.
+/// in `steps` steps. An error where it meets more curves than can be traced, each `at_most` so often.
 fn by_counts(
     plane: &SystemPlane,
     across: Across,
-    steps: usize,
+    (steps, at_most): (usize, u64),
     at: &dyn Fn(usize) -> f64,
     starts: &mut Vec<Start>,
-) {
+) -> Result<(), TooManyCurves> {
     let search = Search { plane, across };
+    let others = starts.len();
     let mut before: Option<(f64, RightOf)> = None;
     for i in 0..=steps {
         let here = (at(i), search.count(at(i)));
@@ -93,7 +105,12 @@ fn by_counts(
             search.between(before, here, ENCLOSED * width, starts);
         }
         before = Some(here);
+        let arcs = (starts.len() - others) as u64 / at_most;
+        if arcs > MOST_ARCS {
+            return Err(TooManyCurves { arcs, corners: 0 });
+        }
     }
+    Ok(())
 }
 
 struct Search<'a, 'p> {
@@ -123,7 +140,7 @@ impl Search<'_, '_> {
         enough: f64,
         starts: &mut Vec<Start>,
     ) {
-        if from.1 == to.1 {
+        if from.1 == to.1 || self.plane.stopped() {
             return;
         }
         let middle = 0.5 * (from.0 + to.0);

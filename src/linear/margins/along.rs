@@ -42,11 +42,11 @@ pub fn delay(of: &impl AsCase) -> Limits {
         };
     }
     let what = Varied::Delay;
-    let family = Along { case, what };
     let longest = longest_delay(&case);
+    let family = Along { case, what };
     let upper = outwards(&family, tau, tau.max(1.0), longest);
     // Stability is lost where roots accumulate at the latest.
-    let open = upper == f64::INFINITY && longest < longest_searched(&case.setting);
+    let open = upper == f64::INFINITY && longest < longest_searched(&family.case.setting);
     Limits {
         lower: found_or(nearest(&family, (tau, 0.0), &mut { MOST_BOXES }), 0.0),
         upper: if open { f64::NAN } else { upper },
@@ -139,7 +139,7 @@ fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
 /// The latency margin where a decay rate is required.
 pub(super) fn latency_with_decay(case: &Case) -> f64 {
     let family = Along {
-        case: *case,
+        case: case.clone(),
         what: Varied::Latency,
     };
     outwards(&family, 0.0, 1.0, longest_latency(case.setting.decay))
@@ -178,6 +178,10 @@ enum Varied<'a> {
 }
 
 impl Family for Along<'_> {
+    fn stopped(&self) -> bool {
+        self.case.stopped()
+    }
+
     fn enclosed(&self, omega: (f64, f64), parameter: (f64, f64)) -> Enclosed<2> {
         let Setting { groups, tau, decay } = self.case.setting;
         let constant = |value: f64| Affine::constant(value.into());

@@ -159,7 +159,7 @@ impl Margins {
                     changes.push(factor);
                 }
             };
-            if self.intervals.zeros(&f, (0.0, end), &mut keep) == Err(TooMany) {
+            if case.stopped() || self.intervals.zeros(&f, (0.0, end), &mut keep).is_err() {
                 return Limits {
                     lower: lower.unwrap_or(f64::NAN),
                     upper: f64::NAN,

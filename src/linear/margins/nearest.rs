@@ -24,6 +24,9 @@ pub(super) trait Family {
 
     /// The ω beyond which no root is on the line while the parameter is within `parameter`.
     fn bound(&self, parameter: (f64, f64)) -> f64;
+
+    /// Whether nobody waits for the answer any more.
+    fn stopped(&self) -> bool;
 }
 
 /// What a search came to.
@@ -78,7 +81,7 @@ pub(super) fn nearest(family: &impl Family, (from, to): (f64, f64), left: &mut u
         omega: (0.0, family.bound(whole)),
         parameter: whole,
     }]);
-    while *left > 0 {
+    while *left > 0 && !family.stopped() {
         *left -= 1;
         let Some(part) = parts.pop().filter(|part| part.distance < best) else {
             return found;

@@ -115,7 +115,10 @@ impl Surroundings<'_> {
             };
             proved = part.distance.max(proved);
             // Where nothing is known not to be stable, all of the box is proved.
-            if work > MOST_WORK || (unstable.is_some() && proved >= TIGHT * bound) {
+            if work > MOST_WORK
+                || self.case.stopped()
+                || (unstable.is_some() && proved >= TIGHT * bound)
+            {
                 break;
             }
             let middle = |(from, to): (f64, f64)| 0.5 * (from + to);

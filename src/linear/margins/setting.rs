@@ -4,6 +4,7 @@ use super::beyond::Beyond;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
+use crate::model::stop::Stop;
 
 /// A setting whose margins are asked for, in dimensionless numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,10 +18,11 @@ pub struct Setting {
 }
 
 /// A setting with what its feedback has beyond the letter's own, where it has any of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     pub(super) setting: Setting,
     pub(super) beyond: Option<Beyond>,
+    stop: Stop,
 }
 
 /// What margins can be asked of.
@@ -31,7 +33,7 @@ pub trait AsCase {
 
 impl AsCase for Case {
     fn case(&self) -> Case {
-        *self
+        self.clone()
     }
 }
 
@@ -40,6 +42,7 @@ impl AsCase for Setting {
         Case {
             setting: *self,
             beyond: None,
+            stop: Stop::default(),
         }
     }
 }
@@ -68,7 +71,20 @@ impl Case {
         Self {
             setting,
             beyond: Some(beyond),
+            stop: Stop::default(),
         }
+    }
+
+    /// The same, but once `stop` is set margins are told soon, and mean nothing.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let stop = stop.clone();
+        Self { stop, ..self }
+    }
+
+    /// Whether nobody waits for the margins any more.
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.is_set()
     }
 
     /// Whether the feedback has anything beyond the letter's own.
@@ -85,8 +101,11 @@ impl Case {
     }
 
     /// Whether all roots are left of the line with other groups and another delay; none where one
-    /// is on it within rounding.
+    /// is on it within rounding, and once nobody waits for it.
     pub(super) fn stability_at(&self, groups: Groups, tau: f64) -> Option<bool> {
+        if self.stopped() {
+            return None;
+        }
         let decay = self.setting.decay;
         match &self.beyond {
             Some(beyond) => beyond.stability(groups, tau, decay),

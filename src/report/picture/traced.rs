@@ -2,6 +2,7 @@
 //! planes, traced from its sweep, which gives the same curves every time.
 
 use super::view::View;
+use crate::model::stop::Stop;
 use crate::store::curve_reader::curves_of;
 use crate::store::curve_rows::CurveRows;
 use crate::store::map_file::MapCurve;
@@ -58,7 +59,7 @@ impl Curves {
             ..Self::default()
         };
         for panel in &view.panels {
-            let Ok(traced) = trace_spanned(plan, plane, panel) else {
+            let Ok(traced) = trace_spanned(plan, plane, panel, &Stop::default()) else {
                 curves.missing = Some("a parameter leaves the range of the model");
                 continue;
             };

@@ -5,11 +5,13 @@ use crate::linear::curves::{PlaneCurves, Window};
 use crate::linear::general::curves::trace;
 use crate::linear::general::{Setting as SystemSetting, SystemPlane};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::setting::Setting;
 
-/// Traces the curves of the plane of the two parameters `of`.
+/// Traces the curves of the plane of the two parameters `of`. Once `stop` is set, the answer comes
+/// soon but is meaningless.
 ///
 /// # Errors
 /// When a parameter is outside the model's range in a corner of the window.
@@ -17,7 +19,7 @@ pub(super) fn trace_window(
     setting: &Setting,
     of: [&Quantity; 2],
     window: &Window,
-    degrees_of_stability: &[f64],
+    (degrees_of_stability, stop): (&[f64], &Stop),
 ) -> Result<Vec<DegreeCurves>, ModelError> {
     let system_at = |p: f64, q: f64| -> Result<SystemSetting, ModelError> {
         let mut setting = setting.clone();
@@ -50,7 +52,7 @@ pub(super) fn trace_window(
                 true => SystemPlane::of_lines(&at, &part),
                 false => SystemPlane::new(&at, &part, delays),
             };
-            curves = joined(curves, trace(&plane, sigma));
+            curves = joined(curves, trace(&plane.heeding(stop), sigma));
         }
         DegreeCurves {
             degree_of_stability: sigma,

@@ -13,6 +13,7 @@
 
 use crate::linear::MarginalTolerance;
 use crate::model::Control;
+use crate::model::stop::Stop;
 use crate::slip::case::{Case, CaseError, Start};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::{Integrator, Motion};
@@ -224,6 +225,7 @@ impl Asked {
         Follower {
             asked: self,
             case: self.case.clone(),
+            stop: Stop::default(),
         }
     }
 }
@@ -232,9 +234,17 @@ impl Asked {
 pub struct Follower<'a> {
     asked: &'a Asked,
     case: Case,
+    stop: Stop,
 }
 
 impl Follower<'_> {
+    /// The same, but motions end once `stop` is set; their outcomes are then meaningless.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let stop = stop.clone();
+        Self { stop, ..self }
+    }
+
     /// The outcome of a start. The memory of another motion is reused if there is one.
     pub fn follow(&mut self, place: Place, motion: &mut Option<Motion>) -> Outcome {
         let [first, second] = self.asked.start(place);
@@ -260,6 +270,7 @@ impl Follower<'_> {
         };
         // An error here means that the motion cannot be followed.
         begun.map_or(Outcome::Undecided, |motion| {
+            motion.heed(&self.stop);
             case.follow(motion, self.asked.abscissa, &mut ()).outcome
         })
     }

@@ -1,11 +1,10 @@
 //! The fields from motions with many starts.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::basin::{Asked, Tally};
 use super::buffers::TileBuffers;
 use super::line::SlowLine;
 use crate::linear::status::NOT_CONVERGED;
+use crate::model::stop::Stop;
 use crate::slip::case::CaseError;
 use crate::slip::motion::Motion;
 use crate::sweep::input::basin::Basin;
@@ -60,11 +59,7 @@ impl<'p> BasinColumns<'p> {
     }
 
     /// The result of a cell; none after a stop.
-    fn cell(
-        &mut self,
-        setting: &Setting,
-        stop: &AtomicBool,
-    ) -> Option<Result<BasinCell, CaseError>> {
+    fn cell(&mut self, setting: &Setting, stop: &Stop) -> Option<Result<BasinCell, CaseError>> {
         let asked = match Asked::of(setting, self.simulation, self.basin) {
             Ok(asked) => asked?,
             Err(error) => return Some(Err(error)),
@@ -72,9 +67,9 @@ impl<'p> BasinColumns<'p> {
         if let Some(known) = asked.known() {
             return Some(Ok(known));
         }
-        let (mut tally, mut follower) = (Tally::default(), asked.follower());
+        let (mut tally, mut follower) = (Tally::default(), asked.follower().heeding(stop));
         for place in asked.places() {
-            if stop.load(Ordering::Relaxed) {
+            if stop.is_set() {
                 return None;
             }
             tally.count(place, follower.follow(place, &mut self.motion));

@@ -8,6 +8,7 @@ use crate::linear::best::{
     self, Best, General, Letter, Optimum, Region, Robust, Search, SearchedGain,
 };
 use crate::linear::lobes::minimal_negative_load_gain;
+use crate::model::stop::Stop;
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::best_plane::{parameter_of, searched_gain};
 use crate::sweep::input::parameter::Parameter;
@@ -137,20 +138,37 @@ fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
+///
+/// # Panics
+/// Never.
 pub fn best_settings(
     setting: &Setting,
     gain: SearchedGain,
     ranges: &Ranges,
 ) -> Result<BestSettings, ModelError> {
+    let found = best_settings_until(setting, gain, ranges, &Stop::default());
+    found.map(|found| found.expect("nothing stops it"))
+}
+
+/// As [`best_settings`]; none once `stop` is set.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range.
+pub fn best_settings_until(
+    setting: &Setting,
+    gain: SearchedGain,
+    ranges: &Ranges,
+    stop: &Stop,
+) -> Result<Option<BestSettings>, ModelError> {
     let scales = Scales::of(setting, gain)?;
     let search = scales.search(setting, gain, ranges)?;
     let of_letter = !setting.has_state() && beyond_letter(setting).is_none();
     let found = if of_letter {
-        best::best(&search)
+        best::best_until(&search, stop)
     } else {
-        scales.beyond_letter(setting, &search)?
+        scales.beyond_letter(setting, &search, stop)?
     };
-    Ok(scales.settings(&found, ranges))
+    Ok(found.map(|found| scales.settings(&found, ranges)))
 }
 
 /// The first parameter by which the feedback is beyond the letter's own, whatever the gains are.
@@ -237,7 +255,8 @@ impl Scales {
         &self,
         setting: &Setting,
         search: &Search<Letter>,
-    ) -> Result<Best, ModelError> {
+        stop: &Stop,
+    ) -> Result<Option<Best>, ModelError> {
         let gain = parameter_of(search.family.gain);
         // What is wrong with the setting is wrong at every gain.
         setting.linear()?;
@@ -248,7 +267,7 @@ impl Scales {
             let (model, _) = moved.linear().ok()?;
             Some(model.system())
         };
-        Ok(best::best(&Search {
+        let search = Search {
             family: General {
                 system_at: &system_at,
                 lines: true,
@@ -256,7 +275,8 @@ impl Scales {
             },
             gains: search.gains,
             delays: search.delays,
-        }))
+        };
+        Ok(best::best_until(&search, stop))
     }
 
     fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
@@ -285,6 +305,12 @@ pub fn best_plane(plan: &Plan, number: u64) -> Vec<usize> {
 /// model's range.
 #[must_use]
 pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
+    best_of_plane_until(plan, index, &Stop::default())
+}
+
+/// As [`best_of_plane`]; none once `stop` is set.
+#[must_use]
+pub fn best_of_plane_until(plan: &Plan, index: &[usize], stop: &Stop) -> Option<BestSettings> {
     let (p, tau) = plan.best_plane()?;
     let axes = &plan.spec.axes;
     let ranges = Ranges {
@@ -292,5 +318,5 @@ pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
         tau: axes[tau].range(),
     };
     let gain = searched_gain(axes[p].parameter.known()?)?;
-    best_settings(&plan.setting(index), gain, &ranges).ok()
+    best_settings_until(&plan.setting(index), gain, &ranges, stop).ok()?
 }

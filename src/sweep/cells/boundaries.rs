@@ -10,6 +10,7 @@ use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints
 use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::friction::{FrictionLaw, Kind};
+use crate::model::stop::Stop;
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
@@ -59,8 +60,20 @@ pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: 
 /// # Errors
 /// When a parameter is outside the model's range.
 pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelError> {
+    trace_plane_until(plan, index, &Stop::default())
+}
+
+/// As [`trace_plane`]. Once `stop` is set, the answer comes soon but is meaningless.
+///
+/// # Errors
+/// When a parameter is outside the model's range.
+pub fn trace_plane_until(
+    plan: &Plan,
+    index: &[usize],
+    stop: &Stop,
+) -> Result<BoundaryPlane, ModelError> {
     match plan.boundary_plane {
-        Some(plane) => trace_spanned(plan, plane, index),
+        Some(plane) => trace_spanned(plan, plane, index, stop),
         None => Ok(BoundaryPlane {
             index: index.to_vec(),
             curves: Vec::new(),
@@ -69,7 +82,8 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
 }
 
 /// Traces the curves of the plane spanned by the axes `(p, q)` at `index` along the others, whether
-/// the plan has them traced or not. If one of the two is the delay, it is q.
+/// the plan has them traced or not. If one of the two is the delay, it is q. Once `stop` is set, the
+/// answer comes soon but is meaningless.
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
@@ -77,6 +91,7 @@ pub fn trace_spanned(
     plan: &Plan,
     (p, q): (usize, usize),
     index: &[usize],
+    stop: &Stop,
 ) -> Result<BoundaryPlane, ModelError> {
     let (setting, axes) = (plan.setting(index), &plan.spec.axes);
     let window = Window {
@@ -86,10 +101,10 @@ pub fn trace_spanned(
     let degrees = &plan.spec.degrees_of_stability;
     let letter = traced_by_closed_form(&plan.spec, q);
     let curves = if let Some(p) = axes[p].parameter.known().filter(|_| letter) {
-        trace_window(&setting, p, &window, degrees)?
+        trace_window(&setting, p, &window, (degrees, stop))?
     } else {
         let of = [&axes[p].parameter, &axes[q].parameter];
-        any_plane::trace_window(&setting, of, &window, degrees)?
+        any_plane::trace_window(&setting, of, &window, (degrees, stop))?
     };
     Ok(BoundaryPlane {
         index: index.to_vec(),
@@ -105,7 +120,7 @@ fn trace_window(
     setting: &Setting,
     parameter: Parameter,
     window: &Window,
-    degrees_of_stability: &[f64],
+    (degrees_of_stability, stop): (&[f64], &Stop),
 ) -> Result<Vec<DegreeCurves>, ModelError> {
     let groups_at = |p: f64| {
         let mut setting = setting.clone();
@@ -129,9 +144,9 @@ fn trace_window(
                     let scanned =
                         || scan_breakpoints(|p| valid_groups_at(p).0, &part.p, SCAN_STEPS);
                     let breakpoints = breakpoints(setting, parameter, start, scanned)?;
-                    trace(crossings_at, &breakpoints, &part)
+                    trace(crossings_at, &breakpoints, &part, stop)
                 }
-                _ => decay::trace(valid_groups_at, sigma, &part),
+                _ => decay::trace(valid_groups_at, sigma, &part, stop),
             };
             curves = joined(curves, more);
         }

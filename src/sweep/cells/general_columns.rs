@@ -1,7 +1,6 @@
 //! The cells of a line of a general system: counts, roots, and the reasons of special cells.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::buffers::TileBuffers;
 use super::line::Places;
@@ -12,6 +11,7 @@ use crate::linear::general::{Class, DelayLine, Reason, RootCounter, System};
 use crate::linear::row::Delays;
 use crate::linear::status::{CERTIFIED, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
+use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::FeedbackLoop;
 use crate::sweep::input::source::{OfLinear, OfRoots, Source};
@@ -36,7 +36,7 @@ pub(super) struct GeneralLine<'a> {
     pub tolerance: MarginalTolerance,
     pub places: Places,
     /// Once it is set, no further slow cells are computed.
-    pub stop: &'a AtomicBool,
+    pub stop: &'a Stop,
 }
 
 /// Fills the columns of one thread's tiles and reuses its memory.
@@ -120,7 +120,7 @@ impl GeneralColumns {
             .zip(&mut self.status)
             .enumerate()
         {
-            if line.stop.load(Ordering::Relaxed) {
+            if line.stop.is_set() {
                 return;
             }
             let margin = line.system.latency_margin(tau / line.time_unit);
@@ -151,7 +151,7 @@ impl GeneralColumns {
         if known == 0 {
             return;
         }
-        let counter = RootCounter::new(line.system);
+        let counter = RootCounter::new(line.system).heeding(line.stop);
         self.find_accumulations(line, &counter, known);
         let mut begin = 0;
         while begin < known {

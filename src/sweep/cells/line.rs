@@ -1,7 +1,6 @@
 //! A line of cells: its places in the buffers of a tile and in the map.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
+use crate::model::stop::Stop;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 
@@ -63,7 +62,7 @@ pub(super) struct SlowLine<'a> {
     pub places: Places,
     pub numbers: Numbers,
     /// Once it is set, no further cells are computed.
-    pub stop: &'a AtomicBool,
+    pub stop: &'a Stop,
 }
 
 /// A cell of such a line.
@@ -79,7 +78,7 @@ pub(super) struct Here<'s> {
 
 impl SlowLine<'_> {
     pub(super) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.stop.is_set()
     }
 
     /// Visits the cells in order, until a stop.

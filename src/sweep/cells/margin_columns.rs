@@ -5,6 +5,7 @@ use super::line::{Here, SlowLine};
 use super::margins::Around;
 use crate::linear::margins::{Limits, LoopMargins, Margins};
 use crate::linear::status::NOT_CONVERGED;
+use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::source::{OfMargins, Source};
 
@@ -64,7 +65,7 @@ impl MarginColumns {
             return;
         }
         line.each(|here| {
-            let found = self.at(&here, letter);
+            let found = self.at(&here, letter, line.stop);
             if found.gave_up {
                 buffers.status[here.place] |= NOT_CONVERGED;
             }
@@ -76,12 +77,13 @@ impl MarginColumns {
         });
     }
 
-    fn at(&mut self, here: &Here, letter: bool) -> Found {
+    fn at(&mut self, here: &Here, letter: bool, stop: &Stop) -> Found {
         let around = Around::of(here.setting, 0.0);
         // The line was accepted, so its parameters are within the model's range.
         let Some(around) = around.ok().filter(Around::stable) else {
             return UNSTABLE;
         };
+        let around = around.heeding(stop);
         let mut found = UNSTABLE;
         if self.wants(OfMargins::GainLower) || self.wants(OfMargins::GainUpper) {
             found.gain = around.gain(&mut self.search);

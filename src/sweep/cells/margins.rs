@@ -5,6 +5,7 @@ use crate::linear::margins::{
     self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach,
     SlidingLaw,
 };
+use crate::model::stop::Stop;
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
@@ -58,6 +59,13 @@ impl Around {
                 .friction_law()?
                 .map(|law| (law, setting.get(Parameter::V0))),
         })
+    }
+
+    /// The same, but once `stop` is set margins are told soon, and mean nothing.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let of = self.of.heeding(stop);
+        Self { of, ..self }
     }
 
     /// Whether the setting is stable, or decays as required, beyond doubt.

@@ -3,6 +3,7 @@
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
 use crate::linear::status::NOT_CONVERGED;
+use crate::model::stop::Stop;
 use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
@@ -47,7 +48,7 @@ impl<'p> SlipColumns<'p> {
     /// [`NOT_CONVERGED`] where a motion stays undecided.
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         line.each(|here| {
-            let motion = self.motion_at(&here);
+            let motion = self.motion_at(&here, line.stop);
             if motion.outcome == Outcome::Undecided {
                 buffers.status[here.place] |= NOT_CONVERGED;
             }
@@ -59,8 +60,8 @@ impl<'p> SlipColumns<'p> {
     }
 
     /// The outcome of the motion in a cell.
-    fn motion_at(&mut self, here: &Here) -> Summary {
-        match self.follow(here) {
+    fn motion_at(&mut self, here: &Here, stop: &Stop) -> Summary {
+        match self.follow(here, stop) {
             Ok(Some(summary)) => summary,
             Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Summary::without(Outcome::NoCycle),
             // The values of the sweep are checked: an error here means that the motion cannot be
@@ -69,7 +70,7 @@ impl<'p> SlipColumns<'p> {
         }
     }
 
-    fn follow(&mut self, here: &Here) -> Result<Option<Summary>, CaseError> {
+    fn follow(&mut self, here: &Here, stop: &Stop) -> Result<Option<Summary>, CaseError> {
         let Some(case) = self.simulation.case(here.setting, 0.0)? else {
             return Ok(None);
         };
@@ -80,6 +81,7 @@ impl<'p> SlipColumns<'p> {
             }
             none => none.insert(case.motion()?),
         };
+        motion.heed(stop);
         let abscissa = self.sliding.at(&case, here.i)?;
         Ok(Some(case.follow(motion, abscissa, &mut ())))
     }

@@ -11,6 +11,7 @@ use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::Integrator;
 use crate::sweep::input::field::Field;
@@ -66,7 +67,7 @@ impl VcColumns {
                 self.find_block(line, first..count.min(first + BLOCK));
             }
         }
-        line.each(|here| match self.cell(&here) {
+        line.each(|here| match self.cell(&here, line.stop) {
             Ok((cell, status)) => {
                 buffers.status[here.place] |= status;
                 store(&cell, buffers, here.place);
@@ -75,6 +76,10 @@ impl VcColumns {
             // followed.
             Err(_) => store_nothing(buffers, here.place),
         });
+        if line.stopped() {
+            // Answers that a stop cut short mean nothing.
+            self.known.clear();
+        }
     }
 
     /// Computes the answers in a block of a line, unless they are known. Blocks start where those
@@ -91,8 +96,8 @@ impl VcColumns {
             setting.set(Parameter::Tau, line.delays[i]);
             if let Ok(asked) = vc::asked(&setting) {
                 cells.push(i);
-                problems.push(asked.problem);
                 units = Some(asked.units);
+                problems.push(asked.until(line.stop.clone()).problem);
             }
         }
         let Some(units) = units else { return };
@@ -115,8 +120,8 @@ impl VcColumns {
     }
 
     /// The result of a cell, with its status.
-    fn cell(&mut self, here: &Here) -> Result<(VcCell<'_>, u8), ModelError> {
-        let asked = vc::asked(here.setting)?;
+    fn cell(&mut self, here: &Here, stop: &Stop) -> Result<(VcCell<'_>, u8), ModelError> {
+        let asked = vc::asked(here.setting)?.until(stop.clone());
         let protocol = self.search.protocol.at(here.setting);
         let v0 = here.setting.get(Parameter::V0);
         let (tolerance, with_regime, smooth) = (self.tolerance, self.with_regime, self.smooth);

@@ -3,7 +3,6 @@
 //! Longer than most files: each kind of line, of the letter and beyond, is filled from here.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::basin_columns::BasinColumns;
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
@@ -20,6 +19,7 @@ use crate::linear::general::{Reason, System};
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
+use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
 use crate::sweep::input::parameter::Parameter;
@@ -122,12 +122,12 @@ impl<'p> Worker<'p> {
 
     /// Computes every cell of `tile`.
     pub fn compute(&mut self, tile: &Tile) {
-        self.compute_until(tile, &AtomicBool::new(false));
+        self.compute_until(tile, &Stop::default());
     }
 
     /// Computes the cells of `tile` as [`Worker::compute`] does, but begins no further slow cell
     /// once `stop` is set. False if the tile is not complete.
-    pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
+    pub fn compute_until(&mut self, tile: &Tile, stop: &Stop) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
             one_zero_and_one_nan(&mut column.cells);
@@ -135,7 +135,7 @@ impl<'p> Worker<'p> {
         complete
     }
 
-    fn fill_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
+    fn fill_until(&mut self, tile: &Tile, stop: &Stop) -> bool {
         if self.plan.spec.limit {
             self.buffers.clear();
             limit_columns::fill(self.plan, tile, &self.strides, &mut self.buffers);
@@ -153,12 +153,14 @@ impl<'p> Worker<'p> {
             self.buffers.status.fill(0);
         }
         self.unflagged = whole;
+        let mut cut_short = false;
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
             if let Some(mut one) = self.by_delay.take() {
                 self.fill_by_delay(&mut one, at, stop);
                 self.by_delay = Some(one);
+                cut_short |= stop.is_set();
                 return;
             }
             let of_letter = match self.lines.model() {
@@ -177,8 +179,10 @@ impl<'p> Worker<'p> {
                 Err(_) => return self.refuse_line(at),
             };
             self.fill_slowly(&tile.offset, inside, at, of_letter, stop);
+            let slow = of_letter == Some(false) || self.is_slow();
+            cut_short |= slow && stop.is_set();
         });
-        !self.is_slow() || !stop.load(Ordering::Relaxed)
+        !cut_short
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
@@ -202,7 +206,7 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes the cells of a line of a general system.
-    fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &AtomicBool) {
+    fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &Stop) {
         let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
         let of_loop = sensitive.then(|| FeedbackLoop::of(&self.lines.setting).ok());
         let of_loop = of_loop.flatten();
@@ -227,7 +231,7 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
-    fn fill_by_delay(&mut self, one: &mut Delays, at: usize, stop: &AtomicBool) {
+    fn fill_by_delay(&mut self, one: &mut Delays, at: usize, stop: &Stop) {
         for i in 0..self.delays.values().len() {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
             one.set_one(tau);
@@ -371,7 +375,7 @@ impl<'p> Worker<'p> {
         inside: &[usize],
         at: usize,
         of_letter: Option<bool>,
-        stop: &AtomicBool,
+        stop: &Stop,
     ) {
         if !self.is_slow() {
             return;
