@@ -221,6 +221,26 @@ fn only_the_own_page_is_answered() {
         (post, &[known, toml, ("Sec-Fetch-Site", "cross-site")], 403),
         (post, &[known, toml, ("Origin", &own)], 200),
         (post, &[known, ("Content-Type", "text/plain")], 415),
+        (
+            post,
+            &[
+                known,
+                toml,
+                ("Origin", &own),
+                ("Origin", "http://evil.example"),
+            ],
+            403,
+        ),
+        (
+            post,
+            &[
+                known,
+                toml,
+                ("Origin", "http://evil.example"),
+                ("Origin", &own),
+            ],
+            403,
+        ),
         ("GET /api/v1/point", &[known], 405),
         ("GET /%2e%2e/%2e%2e/etc/passwd", &[known], 404),
         ("GET /..%2f..%2fetc%2fpasswd", &[known], 404),

@@ -6,9 +6,11 @@
 use std::io;
 use std::net::IpAddr;
 
-use axum::http::header::{AUTHORIZATION, COOKIE, HOST, ORIGIN};
+use axum::http::header::{AUTHORIZATION, COOKIE, HOST, HeaderName, ORIGIN};
 use axum::http::{HeaderMap, Method};
 
+/// Where a browser says that a request comes from.
+const SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 /// Bytes of a token.
 const BYTES: usize = 32;
 
@@ -120,13 +122,9 @@ impl Access {
 
     /// Checks that a request names this host, by a name that a browser on this machine has for it.
     pub(super) fn check_host(&self, headers: &HeaderMap) -> Result<(), Refusal> {
-        let mut hosts = headers.get_all(HOST).iter();
-        let (Some(host), None) = (hosts.next(), hosts.next()) else {
-            return Err(Refusal::Host);
-        };
-        match host.to_str().is_ok_and(|host| self.hosts.have(host)) {
-            true => Ok(()),
-            false => Err(Refusal::Host),
+        match said(headers, &HOST) {
+            Ok(Some(host)) if self.hosts.have(host) => Ok(()),
+            _ => Err(Refusal::Host),
         }
     }
 
@@ -155,14 +153,28 @@ impl Access {
         }
     }
 
-    /// Whether a request does not come from another page.
+    /// Whether a request does not come from another page. What is said more than once is believed
+    /// of no page: which of the values a program before this server has read is not known.
     fn is_own(headers: &HeaderMap) -> bool {
-        let text = |value: &axum::http::HeaderValue| value.to_str().unwrap_or("").to_owned();
-        let site = headers.get("sec-fetch-site").map(text);
-        let origin = headers.get(ORIGIN).map(text);
-        let host = headers.get(HOST).map(text).unwrap_or_default();
-        site.is_none_or(|site| site == "same-origin")
-            && origin.is_none_or(|origin| origin == format!("http://{host}"))
+        let [site, origin, host] = [SITE, ORIGIN, HOST].map(|name| said(headers, &name));
+        let (Ok(site), Ok(origin), Ok(host)) = (site, origin, host) else {
+            return false;
+        };
+        let own = format!("http://{}", host.unwrap_or_default());
+        site.is_none_or(|site| site == "same-origin") && origin.is_none_or(|origin| origin == own)
+    }
+}
+
+/// A header is there more than once, or is no text.
+struct Unclear;
+
+/// The value of a header; none where it is absent.
+fn said<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>, Unclear> {
+    let mut values = headers.get_all(name).iter();
+    match (values.next(), values.next()) {
+        (None, _) => Ok(None),
+        (Some(value), None) => value.to_str().map(Some).map_err(|_| Unclear),
+        _ => Err(Unclear),
     }
 }
 
@@ -277,6 +289,21 @@ mod tests {
             check(Method::POST, &[&host, &cookie, &cross]),
             Err(Refusal::Origin)
         );
+        let same = ("sec-fetch-site", "same-origin".to_owned());
+        assert_eq!(check(Method::POST, &[&host, &cookie, &own, &same]), Ok(()));
+        for twice in [
+            [&own, &other],
+            [&other, &own],
+            [&own, &own],
+            [&same, &cross],
+        ] {
+            let list = [&[&host, &cookie][..], &twice].concat();
+            assert_eq!(
+                check(Method::POST, &list),
+                Err(Refusal::Origin),
+                "{twice:?}"
+            );
+        }
         assert_eq!(check(Method::GET, &[&host, &cookie, &cross]), Ok(()));
         assert_eq!(check(Method::GET, &[&host]), Err(Refusal::Token));
         let bearer = ("authorization", format!("Bearer {}", access.token()));
