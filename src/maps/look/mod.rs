@@ -1,5 +1,5 @@
-//! Interactive display of a map. Windows are read bit by bit, on threads of their own, and cells
-//! that were read are kept while there is room.
+//! Interactive display of a map. Windows are read bit by bit, on threads of their own, as long as
+//! they are requested again and again; cells that were read are kept while there is room.
 //!
 //! ```text
 //! window asked → [pixels] the cells under each → [view] chunks in turn → [source] stored bytes
@@ -57,6 +57,8 @@ use crate::store::curve_reader::MapCurve;
 const MOST_VIEWS: usize = 2;
 /// The most bytes of their pixels; beyond that, only the last window is read.
 const MOST_OF_VIEWS: usize = 24 << 20;
+/// How long a window is read on after an answer, for its next request.
+const UNTIL_NEXT: Duration = Duration::from_millis(200);
 /// The most threads that read.
 const MOST_THREADS: usize = 4;
 
@@ -157,13 +159,14 @@ impl Look {
         }
     }
 
-    /// A window, once it is read completely or `patience` is over.
+    /// A window, once it is read completely or `patience` is over. It is read on for a moment
+    /// then, so that the next request for it finds more.
     ///
     /// # Errors
     /// A description of the fault when there is no such window.
     pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Arc<View>, String> {
         let until = Instant::now() + patience;
-        let view = self.view(asked)?;
+        let view = self.view(asked, until + UNTIL_NEXT)?;
         let mut views = self.desk.views();
         while !view.is_complete() {
             let left = until.saturating_duration_since(Instant::now());
@@ -177,19 +180,24 @@ impl Look {
         Ok(view)
     }
 
-    /// The view of a window: the one that is already being read, or a new one.
-    fn view(&self, asked: &Asked) -> Result<Arc<View>, String> {
+    /// The view of a window that is wanted until `until`: the one that is already being read, or a
+    /// new one.
+    fn view(&self, asked: &Asked, until: Instant) -> Result<Arc<View>, String> {
         let version = self.reading.version.load(Ordering::Relaxed);
         let mut views = self.desk.views();
         let known = |view: &Arc<View>| view.asked == *asked && view.version == version;
         if let Some(place) = views.iter().position(known) {
             let view = views.remove(place).ok_or("it has gone")?;
+            view.want(until);
             views.push_front(Arc::clone(&view));
+            drop(views);
+            self.desk.work.notify_all();
             return Ok(view);
         }
         drop(views);
         let number = self.numbers.fetch_add(1, Ordering::Relaxed);
-        let view = Arc::new(View::new(asked.clone(), &self.facts, version, number)?);
+        let view = View::new(asked.clone(), &self.facts, (version, number), until)?;
+        let view = Arc::new(view);
         self.reading.show_kept(&view);
         let mut views = self.desk.views();
         views.push_front(Arc::clone(&view));
@@ -242,11 +250,11 @@ impl Desk {
         locked(&self.views)
     }
 
-    /// The next chunk of the newest window with chunks left; waits for one.
+    /// The next chunk of the newest window that is wanted and has chunks left; waits for one.
     fn next(&self) -> (Arc<View>, Job) {
         let mut views = self.views();
         loop {
-            let mut all = views.iter();
+            let mut all = views.iter().filter(|view| view.is_wanted());
             let found = all.find_map(|view| {
                 let job = locked(&view.jobs).next()?;
                 Some((Arc::clone(view), job))
@@ -302,8 +310,7 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_window_is_complete_also_where_a_chunk_fails() {
+    fn view(until: Instant) -> Arc<View> {
         let stretch = Stretch {
             from: None,
             to: None,
@@ -318,9 +325,33 @@ mod tests {
             across: stretch,
             up: stretch,
         };
-        let facts = facts();
-        let view = Arc::new(View::new(asked, &facts, 1, 1).unwrap());
-        let desk = Desk::default();
+        Arc::new(View::new(asked, &facts(), (1, 1), until).unwrap())
+    }
+
+    /// What nobody asks for any more is left, and read on once it is asked for again.
+    #[test]
+    fn a_window_that_nobody_waits_for_is_not_read() {
+        let (desk, gone) = (Desk::default(), view(Instant::now()));
+        let wanted = view(Instant::now() + Duration::from_secs(600));
+        desk.views().push_front(Arc::clone(&wanted));
+        desk.views().push_front(Arc::clone(&gone));
+        // The newest one comes first, but not where its client has gone.
+        desk.work(|view, _| {
+            assert!(std::ptr::eq(view, Arc::as_ptr(&wanted)));
+            Ok(())
+        });
+        gone.want(Instant::now() + Duration::from_secs(600));
+        gone.want(Instant::now());
+        desk.work(|view, _| {
+            assert!(std::ptr::eq(view, Arc::as_ptr(&gone)));
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn a_window_is_complete_also_where_a_chunk_fails() {
+        let (desk, facts) = (Desk::default(), facts());
+        let view = view(Instant::now() + Duration::from_secs(600));
         desk.views().push_front(Arc::clone(&view));
         for number in 0..10 {
             assert!(!view.is_complete(), "{number}");

@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use super::canvas::{BEYOND, Canvas, NOT_COMPUTED, SEVERAL, UNREAD, Under};
 use super::cells::{Cell, Slab};
@@ -57,6 +58,8 @@ pub struct View {
     /// The pixels that hide flagged cells; none while no such cells were found.
     amiss: Mutex<Option<Canvas<u8>>>,
     pub(super) jobs: Mutex<Jobs>,
+    /// Nobody waits for it any longer than this, unless it is requested again.
+    until: Mutex<Instant>,
     total: usize,
     done: AtomicUsize,
     damage: Mutex<Option<String>>,
@@ -68,15 +71,15 @@ pub(super) fn locked<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 impl View {
-    /// A view of which nothing is read yet.
+    /// A view of which nothing is read yet, and that somebody waits for until `until`.
     ///
     /// # Errors
     /// A description of the fault when there is no such window.
     pub(super) fn new(
         asked: Asked,
         facts: &Facts,
-        version: u64,
-        number: u64,
+        (version, number): (u64, u64),
+        until: Instant,
     ) -> Result<Self, String> {
         let column = facts.column(asked.field);
         let column = column.ok_or("the map does not hold this field")?;
@@ -112,6 +115,7 @@ impl View {
             amiss: Mutex::default(),
             total: jobs.len(),
             jobs: Mutex::new(jobs),
+            until: Mutex::new(until),
             done: AtomicUsize::new(0),
             damage: Mutex::default(),
             plane: std::sync::Arc::new(plane),
@@ -129,6 +133,17 @@ impl View {
     pub(super) fn bytes(&self) -> usize {
         // Value and bits of the field, and the same for the status and for flagged cells.
         self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 5)
+    }
+
+    /// Somebody waits for it until `until`.
+    pub(super) fn want(&self, until: Instant) {
+        let mut latest = locked(&self.until);
+        *latest = until.max(*latest);
+    }
+
+    /// Whether somebody waits for it.
+    pub(super) fn is_wanted(&self) -> bool {
+        Instant::now() < *locked(&self.until)
     }
 
     pub(super) fn is_complete(&self) -> bool {
