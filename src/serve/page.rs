@@ -41,6 +41,7 @@ const FILES: &[(&str, &str)] = &files![
     "scale.js",
     "slice.js",
     "source.js",
+    "stale.js",
     "state.js",
     "sweep.js",
     "table.js",

@@ -12,6 +12,7 @@ import { ZOOM, follow, zoomed } from "./pointing.js";
 import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
+import { Stale } from "./stale.js";
 import { addressOf, leavesTable, stateOf } from "./state.js";
 import { lineOfMistake, parametersOf, pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
@@ -46,9 +47,11 @@ class Explorer {
     this.catalogue = catalogue;
     this.state = stateOf(location.hash, catalogue);
     this.plane = new PlaneView(element("chart"));
+    this.stale = new Stale(this.plane);
     const failed = (error) => this.failed(error);
     const words = (error) => this.words(error);
-    this.live = new Live(source, catalogue, { shown: (plane) => this.#shown(plane), failed });
+    const shown = (plane) => this.#shown(plane);
+    this.live = new Live(source, catalogue, this.stale, { shown, failed });
     this.panel = new Panel(source, {
       moved: (start) => this.#started(start),
       told: () => this.#say(),
@@ -60,8 +63,8 @@ class Explorer {
       failed,
       words,
     });
-    this.saved = new Saved(source, this.state, this.plane, {
-      shown: (plane) => this.#shown(plane),
+    this.saved = new Saved(source, this.state, this.plane, this.stale, {
+      shown,
       opened: () => this.#mode(),
       look: (texts, about) => this.panel.look(texts, { start: this.state.start, ...about }),
       changed: () => this.#settle(),
@@ -86,6 +89,7 @@ class Explorer {
     element("origin").textContent = map ? "from the file" : "computed now";
     element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
     this.plane.plane = null;
+    this.stale.clear();
     if (map) {
       // Nothing is moved or zoomed before the map is there.
       this.plane.view = null;

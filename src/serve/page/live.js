@@ -9,6 +9,8 @@ import { sweepOf } from "./sweep.js";
 const CELLS = [800, 600];
 /** How long nothing moves before it rests, in milliseconds. */
 const REST = 150;
+/** After this a chart is given up for a newer one, in milliseconds. */
+const PATIENCE = 500;
 /** Fields whose cells cost no more than counts. */
 const QUICK = ["n_unstable", "delay_margin"];
 /** What the bits of a cell's status say. */
@@ -44,9 +46,11 @@ function curvesOf(chart) {
 export class Live {
   /**
    * @param {object} source see source.js
+   * @param {import("./stale.js").Stale} stale
    * @param {{shown: Function, failed: Function}} told
    */
-  constructor(source, catalogue, told) {
+  constructor(source, catalogue, stale, told) {
+    this.stale = stale;
     this.catalogue = catalogue;
     this.fields = Object.fromEntries(catalogue.fields.map((field) => [field.name, field]));
     this.told = told;
@@ -61,7 +65,8 @@ export class Live {
     // A chart of before does not stand for what is refused.
     const show = (chart, question) => question.number > this.refused && this.#show(chart, question);
     [this.number, this.refused] = [0, 0];
-    this.requests = new Newest(ask, show, told.failed, 2);
+    const failed = (error) => this.#failed(error);
+    this.requests = new Newest(ask, show, failed, { most: 2, patience: PATIENCE });
   }
 
   /** The sweep file of what is set. */
@@ -72,6 +77,7 @@ export class Live {
   /** What is set has changed, and may change again soon. */
   changed(state) {
     clearTimeout(this.resting);
+    this.set = this.stale.ask();
     const quick = QUICK.includes(state.show) ? state.show : "n_unstable";
     this.#want(state, [...new Set(["n_unstable", quick])], quick);
     const all = [...new Set(["n_unstable", "abscissa", state.show])];
@@ -87,15 +93,21 @@ export class Live {
     try {
       const text = this.text(state, CELLS, fields);
       const logs = [state.x.log, state.y.log];
-      this.requests.want({ text, show, logs, rests, number: ++this.number });
+      const { set } = this;
+      this.requests.want({ text, show, logs, rests, set, number: ++this.number });
     } catch (error) {
       // What was asked before is not what is set.
       this.requests.stop();
-      this.told.failed(error);
+      this.#failed(error);
     }
   }
 
-  #show(chart, { show, logs, rests }) {
+  #failed(error) {
+    this.stale.fail();
+    this.told.failed(error);
+  }
+
+  #show(chart, { show, logs, rests, set }) {
     const found = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
     const field = { ...this.fields[found.name], ...found };
     const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));
@@ -117,5 +129,6 @@ export class Live {
       milliseconds: chart.milliseconds,
       rests,
     });
+    this.stale.show(set);
   }
 }

@@ -9,6 +9,9 @@ import { told, withUnit } from "./scale.js";
 /** Points of a line that are drawn; more cannot be told apart. */
 const MOST_DRAWN = 6000;
 const REST = [0, 0];
+/** After this a motion is given up for one from another start, in milliseconds. */
+const PATIENCE = 500;
+const FORMER = "What is shown is of the start before; the motion from this one is not there yet.";
 
 export class MotionCard {
   /**
@@ -35,7 +38,7 @@ export class MotionCard {
       [this.last, this.wanted] = [answer, null];
       heard(answer);
     };
-    this.requests = new Newest(ask, show, () => {});
+    this.requests = new Newest(ask, show, () => {}, { patience: PATIENCE });
     this.#listen();
     new ResizeObserver(() => this.#draw()).observe(this.phase);
   }
@@ -100,6 +103,7 @@ export class MotionCard {
     element("motion").classList.toggle("blank", !motion);
     element("motion").classList.toggle("failed", Boolean(error));
     element("outcome").classList.toggle("asking", this.pending);
+    element("motion-stale").textContent = motion && this.pending ? FORMER : "";
     if (motion === this.motion) return;
     this.motion = motion;
     if (motion) this.#show(motion);

@@ -5,10 +5,11 @@ export class Newest {
    * @param {(question: any, signal: AbortSignal) => Promise<any>} ask
    * @param {(answer: any, question: any) => void} show
    * @param {(error: Error, question: any) => void} fail
-   * @param {number} most questions that are under way at once
+   * @param {{most?: number, patience?: number}} limits questions that are under way at once, and
+   *   after how many milliseconds one of them is given up for a newer one
    */
-  constructor(ask, show, fail, most = 1) {
-    Object.assign(this, { ask, show, fail, most });
+  constructor(ask, show, fail, { most = 1, patience = Infinity } = {}) {
+    Object.assign(this, { ask, show, fail, most, patience });
     this.underWay = new Map();
     [this.number, this.shown, this.next] = [0, 0, null];
   }
@@ -21,12 +22,19 @@ export class Newest {
 
   /** Asks nothing more, and drops what is under way: nothing waits for it. */
   stop() {
+    clearTimeout(this.later);
     this.next = null;
-    for (const controller of this.underWay.values()) controller.abort();
-    this.underWay.clear();
+    for (const number of this.underWay.keys()) this.#drop(number);
+  }
+
+  #drop(number) {
+    this.underWay.get(number).controller.abort();
+    this.underWay.delete(number);
   }
 
   #go() {
+    clearTimeout(this.later);
+    if (this.next && this.underWay.size >= this.most) this.#makeRoom();
     while (this.next && this.underWay.size < this.most) {
       const { question } = this.next;
       this.next = null;
@@ -34,14 +42,22 @@ export class Newest {
     }
   }
 
+  /** Gives up the oldest question that is under way, now or once it has had its time. */
+  #makeRoom() {
+    const [[oldest, { begun }]] = this.underWay;
+    const left = begun + this.patience - performance.now();
+    if (left <= 0) this.#drop(oldest);
+    else if (left < Infinity) this.later = setTimeout(() => this.#go(), left);
+  }
+
   async #one(number, question) {
     const controller = new AbortController();
-    this.underWay.set(number, controller);
+    this.underWay.set(number, { controller, begun: performance.now() });
     try {
       const answer = await this.ask(question, controller.signal);
       if (number > this.shown && !controller.signal.aborted) {
         this.shown = number;
-        for (const [other, old] of this.underWay) if (other < number) old.abort();
+        for (const other of this.underWay.keys()) if (other < number) this.#drop(other);
         this.show(answer, question);
       }
     } catch (error) {

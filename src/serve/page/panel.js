@@ -20,6 +20,7 @@ const ENDS = {
 };
 const NO_COMMAND = "There is no command line for a table; see the TOML.";
 const NO_V0 = "This map gives no v0: there is no sliding to look at, only the critical velocity.";
+const FORMER = "What is shown here is of the point before; that of this one is not there yet.";
 const NO_POINT = "This map is not about single points of the model.";
 
 /** Where `v0` lies, by the bounds of a critical velocity. */
@@ -119,6 +120,8 @@ export class Panel {
     const section = element("point-title").closest("section");
     section.classList.toggle("asking", Boolean(waits));
     section.setAttribute("aria-busy", String(Boolean(waits)));
+    const former = waits && !this.patience && !element("cards").hidden;
+    element("point-stale").textContent = former ? FORMER : "";
     if (waits) return;
     const { texts, where, fixed = false } = next;
     const problem = next.problem ?? points.error;

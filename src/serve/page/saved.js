@@ -33,11 +33,12 @@ export class Saved {
    * @param {object} source
    * @param {object} state
    * @param {import("./plane.js").PlaneView} plane
+   * @param {import("./stale.js").Stale} stale
    * @param {{shown: Function, opened: Function, look: Function, changed: Function,
    *   failed: Function}} told
    */
-  constructor(source, state, plane, told_) {
-    Object.assign(this, { source, state, plane, told: told_ });
+  constructor(source, state, plane, stale, told_) {
+    Object.assign(this, { source, state, plane, stale, told: told_ });
     [this.map, this.curves, this.describing, this.remarks] = [null, new Map(), 0, []];
     this.windows = new Newest(
       (asked, signal) => {
@@ -139,6 +140,7 @@ export class Saved {
   /** Nothing is seen, and nothing is said of what was. */
   #blank(title) {
     this.plane.clear();
+    this.stale.clear();
     for (const id of ["speed", "readout", "hover"]) element(id).textContent = "";
     for (const id of ["legend", "table"]) element(id).replaceChildren();
     delete element("legend").dataset.key;
@@ -183,6 +185,7 @@ export class Saved {
   /** A window that is not there leaves no older one of something else in its place. */
   #failed(error) {
     element("reading").hidden = true;
+    this.stale.fail();
     if (this.plane.plane?.of !== this.wanted?.of) this.#blank(this.map?.name ?? "Map");
     this.told.failed(error);
   }
@@ -372,6 +375,9 @@ export class Saved {
     else query.h = 1;
     const axes = [map.x, map.y].filter(Boolean).map((name) => this.#axis(name));
     const { id, version } = this.map;
+    const of = JSON.stringify([id, map.field, map.x, map.y, at]);
+    // A view that was only moved shows what lies where.
+    const set = of === this.wanted?.of ? this.wanted.set : this.stale.ask();
     // What an answer is about is told by its question: the state may be another one by then.
     this.wanted = {
       id,
@@ -381,7 +387,8 @@ export class Saved {
       field: this.map.fields.find(({ name }) => name === map.field),
       flags: this.map.flags ?? [],
       fixed: (this.map.scalars ?? []).map(({ name, value }) => [name, value]),
-      of: JSON.stringify([id, map.field, map.x, map.y, at]),
+      of,
+      set,
       curves: JSON.stringify([id, version, map.x, map.y, at]),
     };
     clearTimeout(this.again);
@@ -446,6 +453,7 @@ export class Saved {
         note: this.#note(answer),
       }),
     );
+    this.stale.show(asked.set);
     if (asked.of === this.wanted.of) {
       for (const { name, value } of answer.at ?? []) this.#tellSlider(name, value);
     }
