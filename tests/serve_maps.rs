@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 use brute::{Window, check, complete};
 use chance::Chance;
 use decoded::Decoded;
-use processes::Running;
+use processes::{Running, until};
 use program::{Folder, err, expect};
 use serde_json::Value;
 use server::Serving;
@@ -69,16 +69,6 @@ fn entry(serving: &Serving, name: &str) -> Value {
 
 fn id(serving: &Serving, name: &str) -> String {
     entry(serving, name)["id"].as_str().unwrap().to_owned()
-}
-
-/// Asks until something is so.
-#[track_caller]
-fn until(patience: u64, what: &str, mut is_so: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !is_so() {
-        assert!(begun.elapsed() < Duration::from_secs(patience), "{what}");
-        std::thread::sleep(Duration::from_millis(50));
-    }
 }
 
 #[test]

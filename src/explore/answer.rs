@@ -154,6 +154,16 @@ impl Asked {
         }
     }
 
+    /// Whether it may take many seconds: what follows motions does.
+    #[must_use]
+    pub fn is_slow(&self) -> bool {
+        match self {
+            Self::Chart(plan) => chart::is_slow(plan),
+            Self::CriticalVelocity(_) | Self::Motion(..) => true,
+            Self::Point(_) | Self::Law(_) | Self::Parameters => false,
+        }
+    }
+
     /// The bytes of the answer, of [`Request::content_type`]. `stop` is checked all along: within
     /// motions and curves, between cells, and between counts of roots.
     ///

@@ -172,6 +172,17 @@ pub fn bytes(plan: &Plan) -> u64 {
     Memory::of(plan).per_thread + 2 * cells
 }
 
+/// Whether a chart may take many seconds: its cells follow motions, or are searched through.
+#[must_use]
+pub fn is_slow(plan: &Plan) -> bool {
+    let spec = &plan.spec;
+    spec.follows_motions()
+        || spec.basin.is_some()
+        || spec.critical.is_some()
+        || spec.fields.iter().any(|field| field.of_margins())
+        || plan.best_planes() > 0
+}
+
 fn curves(grid: &Grid) -> Vec<ChartCurve> {
     let of_planes = grid.curves.iter().flat_map(|plane| &plane.curves);
     let mut curves = Vec::new();

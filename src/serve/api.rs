@@ -23,8 +23,10 @@ use super::{computed, openapi, page};
 /// The most bytes of a request's text: enough for friction laws of some thousand points.
 const LONGEST_BODY: usize = 1 << 18;
 
-/// Megabytes for all computations and unsent answers together.
+/// Megabytes for all quick computations and their unsent answers together.
 const ROOM: u32 = 128;
+/// Megabytes for all slow ones.
+const SLOW_ROOM: u32 = 64;
 
 /// What a page may load: its own files, and nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' \
@@ -32,8 +34,12 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 
 /// The router of all addresses.
 pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router {
-    let room = Room::of(ROOM);
-    let served = Served { access, work, room };
+    let served = Served {
+        access,
+        work,
+        room: Room::of(ROOM),
+        slow_room: Room::of(SLOW_ROOM),
+    };
     let interface = computed::routes().merge(maps::routes(maps));
     let all = openapi::described(interface)
         .route("/", get(front))

@@ -10,6 +10,7 @@ use utoipa_axum::routes;
 use super::openapi::Encoded;
 use super::problem::{Denied, Problem, Refused};
 use super::served::Served;
+use super::work::Pace;
 use crate::explore::answer::WithCommand;
 use crate::explore::known::Known;
 use crate::explore::law::LawCurve;
@@ -44,7 +45,8 @@ mod examples {
 
 /// The text of a request.
 fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
-    let kind = headers.get(header::CONTENT_TYPE);
+    let mut kinds = headers.get_all(header::CONTENT_TYPE).iter();
+    let kind = kinds.next().filter(|_| kinds.next().is_none());
     let kind = kind.and_then(|kind| kind.to_str().ok());
     // A semicolon is followed by a charset, and TOML has only one.
     let kind = kind.and_then(|kind| kind.split(';').next()).map(str::trim);
@@ -62,8 +64,16 @@ async fn answer(
     text: Result<String, Problem>,
 ) -> Result<Response, Problem> {
     let asked = Asked::read(request, &text?, &Limits::default())?;
-    let room = served.room.take(asked.bytes()).await?;
-    let bytes = served.work.run(move |stop| asked.answer(stop)).await?;
+    let (turn, room) = if asked.is_slow() {
+        // Those that wait for a thread take no room yet.
+        let turn = served.work.turn(Pace::Slow).await?;
+        (turn, served.slow_room.take(asked.bytes()).await?)
+    } else {
+        // What needs no room does not wait for what waits for room.
+        let room = served.room.take(asked.bytes()).await?;
+        (served.work.turn(Pace::Quick).await?, room)
+    };
+    let bytes = turn.run(move |stop| asked.answer(stop)).await?;
     Ok(room.send(request.content_type(), bytes))
 }
 

@@ -2,11 +2,8 @@
 //! room for others.
 
 use std::collections::VecDeque;
-use std::io::{Error, ErrorKind, Result};
-use std::pin::Pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::task::{Context, Poll, ready};
 use std::time::Duration;
 
 use axum::Router;
@@ -19,11 +16,12 @@ use hyper::server::conn::http1;
 use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::sync::Semaphore;
 use tokio::task::AbortHandle;
-use tokio::time::{Instant, Sleep, sleep, timeout};
+use tokio::time::{sleep, timeout};
 
+use super::leaving::{Asking, Socket, Watched, gone};
+use super::patient::Patient;
 use super::problem::Problem;
 
 /// The most connections that are open at a time.
@@ -95,26 +93,39 @@ fn end_oldest(silent: &mut Silent) {
     }
 }
 
-/// Answers one connection.
-async fn one<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
+/// Answers one connection, as long as its client is there.
+async fn one<S: Socket>(
     stream: S,
     app: Router,
     asked: Arc<AtomicBool>,
     place: tokio::sync::OwnedSemaphorePermit,
 ) {
     let app = TowerToHyperService::new(app);
+    let asking = Arc::new(Asking::default());
+    let begun = Arc::clone(&asking);
     let service = service_fn(move |mut request: hyper::Request<hyper::body::Incoming>| {
         request.extensions_mut().insert(Silence(Arc::clone(&asked)));
-        app.call(request)
+        let answering = begun.begin(request.version());
+        let answer = app.call(request);
+        async move {
+            let answer = answer.await;
+            drop(answering);
+            answer
+        }
     });
-    let stream = TokioIo::new(Patient::new(stream, TO_READ));
+    let stream = Watched::new(Patient::new(stream, TO_READ));
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(TO_ASK)
         .max_buf_size(LONGEST_HEAD)
-        .serve_connection(stream, service);
-    // Clients that break off are not reported.
-    drop(connection.await);
+        // A client may say that it sends no more, and wait for its answer.
+        .half_close(true)
+        .serve_connection(TokioIo::new(stream.clone()), service);
+    tokio::select! {
+        // Clients that break off are not reported.
+        _ = connection => {}
+        () = gone(&stream, &asking) => {}
+    }
     drop(place);
 }
 
@@ -140,141 +151,18 @@ pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Resp
     };
     match timeout(TO_ASK, to_bytes(body, most)).await {
         Ok(Ok(bytes)) => next.run(Request::from_parts(head, Body::from(bytes))).await,
+        Ok(Err(error)) if is_of_connection(&error) => refused(
+            StatusCode::BAD_REQUEST,
+            "the request ended before all of it came",
+        ),
         Ok(Err(_)) => refused(StatusCode::PAYLOAD_TOO_LARGE, "the request is too long"),
         Err(_) => refused(StatusCode::REQUEST_TIMEOUT, "the request came too slowly"),
     }
 }
 
-/// A connection that is closed if the other end does not read in time.
-struct Patient<S> {
-    stream: S,
-    patience: Duration,
-    /// The deadline for the other end to read, while something waits to be read.
-    until: Option<Pin<Box<Sleep>>>,
-}
-
-impl<S> Patient<S> {
-    fn new(stream: S, patience: Duration) -> Self {
-        Self {
-            stream,
-            patience,
-            until: None,
-        }
-    }
-
-    /// The result of a write that has to wait: an error after the deadline.
-    fn wait<T>(&mut self, context: &mut Context<'_>) -> Poll<Result<T>> {
-        let end = Instant::now() + self.patience;
-        let until = self
-            .until
-            .get_or_insert_with(|| Box::pin(tokio::time::sleep_until(end)));
-        ready!(until.as_mut().poll(context));
-        Poll::Ready(Err(Error::from(ErrorKind::TimedOut)))
-    }
-}
-
-impl<S: AsyncRead + Unpin> AsyncRead for Patient<S> {
-    fn poll_read(
-        self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<Result<()>> {
-        Pin::new(&mut self.get_mut().stream).poll_read(context, buffer)
-    }
-}
-
-impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
-    fn poll_write(
-        self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<Result<usize>> {
-        let this = self.get_mut();
-        match Pin::new(&mut this.stream).poll_write(context, bytes) {
-            Poll::Pending => this.wait(context),
-            done @ Poll::Ready(_) => done,
-        }
-    }
-
-    fn poll_write_vectored(
-        self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        bytes: &[std::io::IoSlice<'_>],
-    ) -> Poll<Result<usize>> {
-        let this = self.get_mut();
-        match Pin::new(&mut this.stream).poll_write_vectored(context, bytes) {
-            Poll::Pending => this.wait(context),
-            done @ Poll::Ready(_) => done,
-        }
-    }
-
-    fn is_write_vectored(&self) -> bool {
-        self.stream.is_write_vectored()
-    }
-
-    /// Called when all of an answer is written.
-    fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Result<()>> {
-        let this = self.get_mut();
-        match Pin::new(&mut this.stream).poll_flush(context) {
-            Poll::Pending => this.wait(context),
-            done @ Poll::Ready(_) => {
-                this.until = None;
-                done
-            }
-        }
-    }
-
-    fn poll_shutdown(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Result<()>> {
-        let this = self.get_mut();
-        match Pin::new(&mut this.stream).poll_shutdown(context) {
-            Poll::Pending => this.wait(context),
-            done @ Poll::Ready(_) => done,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// An answer that is not read is given up. One that is read is not, however long it takes.
-    #[cfg(unix)]
-    #[test]
-    fn a_client_that_does_not_read_is_given_up() {
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .unwrap();
-        let written = |reads: bool| {
-            let patience = Duration::from_millis(200);
-            runtime.block_on(async move {
-                let (ours, theirs) = tokio::net::UnixStream::pair().unwrap();
-                let reading = tokio::spawn(async move {
-                    let mut read = vec![0; 1 << 16];
-                    loop {
-                        if reads && theirs.try_read(&mut read).is_ok_and(|bytes| bytes == 0) {
-                            break;
-                        }
-                        sleep(Duration::from_millis(1)).await;
-                    }
-                });
-                let mut stream = Patient::new(ours, patience);
-                let part = vec![7; 1 << 16];
-                let mut left = 10_usize << 20;
-                let done = std::future::poll_fn(|context| {
-                    while left > 0 {
-                        let written = Pin::new(&mut stream).poll_write(context, &part);
-                        left = left.saturating_sub(ready!(written)?);
-                        ready!(Pin::new(&mut stream).poll_flush(context))?;
-                    }
-                    Poll::Ready(Result::Ok(()))
-                });
-                let done = done.await;
-                reading.abort();
-                done
-            })
-        };
-        assert!(written(true).is_ok());
-        assert_eq!(written(false).unwrap_err().kind(), ErrorKind::TimedOut);
-    }
+/// Whether a body could not be read, rather than being too long.
+fn is_of_connection(error: &axum::Error) -> bool {
+    let error: &(dyn std::error::Error + 'static) = error;
+    let mut causes = std::iter::successors(Some(error), |error| error.source());
+    causes.any(<dyn std::error::Error>::is::<hyper::Error>)
 }

@@ -12,22 +12,27 @@
 //! - `api`: addresses and their answers
 //! - `computed`: requests that are computed on demand
 //! - `connections`: how many connections there are, and for how long
+//! - `leaving`: whether the client of a request is still there
 //! - `maps`: maps from files: a list, and windows on them
 //! - `openapi`: the description of the interface
 //! - `page`: the page's files, `src/serve/page`, which are part of the program
+//! - `patient`: a connection that is closed if the other end does not read in time
 //! - `problem`: problems as answers of the server
 //! - `room`: memory for answers, until they are sent
 //! - `served`: the state that all answers share
 //! - `socket`: a socket in the file system, for tunnels
-//! - `work`: computations on few threads, for a limited time, ended when the client has gone
+//! - `work`: computations on few threads, quick ones beside slow ones, for a limited time, ended
+//!   when the client has gone
 
 mod access;
 mod api;
 mod computed;
 mod connections;
+mod leaving;
 mod maps;
 mod openapi;
 mod page;
+mod patient;
 mod problem;
 mod room;
 mod served;
@@ -73,7 +78,7 @@ pub enum Place {
 pub struct Serving {
     /// Where it listens.
     pub place: Place,
-    /// Number of computing threads.
+    /// Number of threads that compute what is quick, and as many for what is slow.
     pub threads: usize,
     /// The folder whose maps are shown.
     pub folder: PathBuf,
@@ -153,7 +158,7 @@ impl Server {
     pub fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
-            .max_blocking_threads(self.threads + BESIDES)
+            .max_blocking_threads(work::most(self.threads) + BESIDES)
             .enable_all()
             .build()?;
         let work = Work::new(self.threads);

@@ -13,6 +13,8 @@ pub(super) struct Served {
     pub access: Arc<Access>,
     /// The computing threads.
     pub work: Work,
-    /// Memory for answers.
+    /// Memory for quick answers.
     pub room: Room,
+    /// Memory for slow answers.
+    pub slow_room: Room,
 }
