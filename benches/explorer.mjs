@@ -1,5 +1,5 @@
-// How fast the page is in a headless Chromium: frames of the live chart while a slider moves, and
-// views of a map of 10⁹ cells; with --peers also heat maps of others at the same work, in turn.
+// How fast the page is in a headless Chromium: frames of the live chart while a slider moves, charts
+// beside slow requests, and views of a map of 10⁹ cells; with --peers also heat maps of others at the same work, in turn.
 //
 //   scripts/browser.sh bench [--seconds N] [--map FOLDER] [--peers]
 //
@@ -8,6 +8,7 @@
 import { join } from "node:path";
 import { parseArgs } from "node:util";
 import { ROOT, newFolder, openBrowser, openPage, serve, slipmap } from "./support.mjs";
+import { rowsOfBeside } from "./explorer/beside.mjs";
 import { chartsOfSteps, dragged, framesOf } from "./explorer/live.mjs";
 import { measureMap, rowsOfMap } from "./explorer/map.mjs";
 import { load, printTable, watchOthers } from "./explorer/measures.mjs";
@@ -75,6 +76,7 @@ async function measureLive(browser, peers) {
       program.told.push(await program.turn());
     }
   }
+  const beside = await rowsOfBeside(page);
   const rows = programs.flatMap(({ title, told }) => [[title], ...framesOf(told)]);
   for (const { peer } of programs.filter((one) => one.peer?.still)) {
     const still = await attempt(peer, () => stillOf(browser, peer, about.size));
@@ -84,7 +86,7 @@ async function measureLive(browser, peers) {
   const faults = pages.flatMap((one) => one.faults);
   for (const one of pages) await one.context().close();
   await server.end();
-  return { rows, faults, about };
+  return { rows, beside, faults, about };
 }
 
 const [before, others] = [load(), watchOthers()];
@@ -105,6 +107,8 @@ printTable([
   ["live charts", `${live.about.cells.join(" × ")} cells`],
   ["charts with their axes", `${live.about.size.join(" × ")} pixels`],
   ...live.rows,
+  ["slipmap, charts of 200 × 150 cells in turn, from request to answer"],
+  ...live.beside,
   ["slipmap, map of 10⁹ cells"],
   ...rowsOfMap(map),
 ]);
