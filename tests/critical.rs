@@ -326,6 +326,68 @@ fn the_methods_agree() {
     assert!(others.len() as u32 * 200 <= claimed, "{}", others.len());
 }
 
+/// Near its graze stick-slip may attract from a few per cent of the way to it alone, so that it is
+/// lost by small steps of v0 again and again. The ends of ramps by an independent program, which
+/// begin below the last kind of stick-slip and halve steps down to 1e-7; by two sizes of its steps
+/// of time and of v0 they agree to 3e-6. Velocity control, and both controls with gains of either
+/// sign.
+#[test]
+fn stick_slip_that_attracts_from_nearby_alone_is_followed_to_its_end() {
+    for (mu0, v_s, alpha_v, alpha_n, tau, expected) in [
+        (
+            0.4793135720798954,
+            1.1225514988405152,
+            -0.28130228377367983,
+            -0.2619275233702053,
+            6.710023100922147,
+            9.224260,
+        ),
+        (
+            0.5127834819104801,
+            0.8331493268582137,
+            -0.4954761684157092,
+            0.06047564972084807,
+            5.885725566550972,
+            15.040942,
+        ),
+        (
+            0.32008506230083184,
+            0.5700988270039815,
+            -0.3837786447256055,
+            0.1666582274574453,
+            5.7953063542779635,
+            6.344316,
+        ),
+        (
+            0.4374061378755425,
+            0.3984718391098064,
+            -0.4980562748863179,
+            0.0,
+            5.971946397287757,
+            18.652891,
+        ),
+        (
+            0.44871706342890627,
+            0.8668913897260604,
+            -0.5184187427575038,
+            0.0,
+            13.39175735497578,
+            13.701306,
+        ),
+    ] {
+        let law = FrictionLaw::weakening(mu0, v_s, 1.0).unwrap();
+        let problem = problem(law, alpha_v, alpha_n, tau);
+        let found = critical_velocity(&problem);
+        let alone = simulated_by(&problem, 0.1);
+        assert!(found.decided, "{expected} {found:?}");
+        for (found, most) in [(found, 4e-5), (alone, 1e-4)] {
+            let error = (found.vc / expected - 1.0).abs();
+            assert!(error < most, "{expected} {found:?}");
+            assert_eq!(found.transition, Transition::Grazing, "{found:?}");
+        }
+    }
+}
+
 /// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the
 /// first one, or the doubling of its period, or where it begins to turn back, goes on as another
 /// one. Its end by two slow ramps in fixed steps (`tests/referee` is such a program), which agree

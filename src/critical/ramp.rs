@@ -87,6 +87,8 @@ pub(super) fn raise<F: Followed>(
         ),
         share: options.share,
         passed: (0.0, 0),
+        by_chance: false,
+        end: f64::NAN,
         vanish: false,
         chance: first.regime == Regime::Irregular,
         spent: first.summary.steps,
@@ -98,7 +100,7 @@ pub(super) fn raise<F: Followed>(
         last: Some(ramp.last),
         lost: ramp.lost.map(|(lost, _)| lost),
         complete,
-        chance: match (ramp.by_chance(), ramp.chance) {
+        chance: match (ramp.by_chance, ramp.chance) {
             (true, _) => Chance::AtEnd,
             (false, true) => Chance::OnTheWay,
             (false, false) => Chance::None,
@@ -128,6 +130,11 @@ struct Ramp<'o, F> {
     share: f64,
     /// The v0 from which on stick-slip survived where it had been lost, and how often it has since.
     passed: (f64, u32),
+    /// Whether stick-slip was lost again and again on a short way, and no event is near: steps of
+    /// any size throw it off by chance.
+    by_chance: bool,
+    /// The v0 of the event that was last predicted to be near; NaN where none was.
+    end: f64,
     /// Whether any step shortened the sticks so much that none would be left soon.
     vanish: bool,
     /// Whether irregular stick-slip or a jump was on the way.
@@ -183,10 +190,40 @@ impl<F: Followed> Ramp<'_, F> {
         }
     }
 
-    /// Whether stick-slip was lost again and again on a short way: steps of any size throw it off
-    /// by chance.
-    fn by_chance(&self) -> bool {
+    /// Whether stick-slip was lost again and again on a short way.
+    fn passes_again_and_again(&self) -> bool {
         self.passed.1 >= self.options.most_passed
+    }
+
+    /// Whether periodic stick-slip is near the event that is predicted. It attracts from less and
+    /// less far then, so steps that are too large for the way that is left lose it, not chance.
+    fn approaches(&self) -> bool {
+        self.end > self.last.v0
+    }
+
+    /// Whether steps have to be small compared with the way that is left.
+    fn is_gentle(&self) -> bool {
+        self.passes_again_and_again() && self.approaches()
+    }
+
+    /// The relative step to where stick-slip is predicted to end.
+    fn way_left(&self) -> f64 {
+        match self.is_gentle() {
+            // Secants of steps that small are noise.
+            true => self.end / self.last.v0 - 1.0,
+            false => predict(self.before, &self.last).step,
+        }
+    }
+
+    /// Notes the event that is predicted from the last two responses, if it is near.
+    fn look_ahead(&mut self, jumped: bool) {
+        if jumped {
+            self.end = f64::NAN;
+        }
+        let step = predict(self.before, &self.last).step;
+        if step < self.options.near {
+            self.end = self.last.v0 * (1.0 + step);
+        }
     }
 
     /// Notes that stick-slip survives at `v0`, where a larger step had lost it.
@@ -196,16 +233,17 @@ impl<F: Followed> Ramp<'_, F> {
             true => (v0, 1),
             false => (from, times + 1),
         };
+        self.by_chance = self.passes_again_and_again() && !self.approaches();
         self.lost = None;
         // Where chance decides, retries would make the search creep on.
         let retry = Retry::Same(self.options.nearby);
-        self.control.retry = Some(retry).filter(|_| !self.by_chance());
+        self.control.retry = Some(retry).filter(|_| !self.by_chance);
     }
 
     /// The next relative step of v0.
     fn next_step(&self) -> f64 {
         let options = self.options;
-        let mut wanted = self.share * predict(self.before, &self.last).step;
+        let mut wanted = self.share * self.way_left();
         if self.last.regime == Regime::Irregular {
             wanted = wanted.min(options.unseen);
         }
@@ -253,10 +291,14 @@ impl<F: Followed> Ramp<'_, F> {
             }
             // Near its end stick-slip attracts from less and less far: steps have to shrink with
             // the way that is left.
-            let taken = step / predict(self.before, &self.last).step;
-            if taken > options.least_share {
+            let taken = step / self.way_left();
+            let least = match self.is_gentle() {
+                true => options.gentle_share,
+                false => options.least_share,
+            };
+            if taken > least {
                 let share = self.continuation.reduction * taken;
-                self.share = share.clamp(options.least_share, self.share);
+                self.share = share.max(least).min(self.share);
             }
             self.control.failed(v0, step);
         } else if step > self.largest_step(&there, step) {
@@ -272,6 +314,7 @@ impl<F: Followed> Ramp<'_, F> {
             }
             self.vanish |= stick_step(&self.last, &there) < options.soon;
             (self.before, self.last) = (Some(self.last), there);
+            self.look_ahead(jumped);
         }
     }
 
@@ -279,7 +322,7 @@ impl<F: Followed> Ramp<'_, F> {
     /// search goes on from there.
     fn is_lost(&mut self) -> bool {
         let slips = |(lost, _): &(Response, f64)| lost.regime == Regime::Slips;
-        let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.by_chance()) else {
+        let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.by_chance) else {
             return true;
         };
         self.trial.copy_from(&self.block);
@@ -293,8 +336,8 @@ impl<F: Followed> Ramp<'_, F> {
         std::mem::swap(&mut self.block, &mut self.trial);
         self.control
             .succeeded(there.v0, there.v0 / self.last.v0 - 1.0);
-        (self.before, self.last) = (None, there);
         self.pass(there.v0);
+        (self.before, self.last) = (None, there);
         false
     }
 }
@@ -381,6 +424,23 @@ mod tests {
         let last = found.last.unwrap();
         assert!((last.v0 - 1.0).abs() < 2e-6, "{found:?}");
         assert!(found.graze_step < 1e-4 && last.depth < 1e-5, "{found:?}");
+    }
+
+    /// Near its graze stick-slip attracts from a small share of the way to it alone. That it is
+    /// lost by larger steps again and again is no chance.
+    #[test]
+    fn a_graze_is_come_near_to_where_stick_slip_attracts_from_nearby_alone() {
+        let options = RampOptions {
+            total_steps: 100_000_000,
+            ..RampOptions::default()
+        };
+        for share in [0.3, 0.1, 0.04] {
+            let found = raised(Family::Narrow(share), 0.5, 0.5, &options);
+            let last = found.last.unwrap();
+            assert_eq!(found.chance, Chance::None, "{share} {found:?}");
+            assert!(found.complete && last.v0 < 1.0, "{share} {found:?}");
+            assert!(1.0 - last.v0 < 5e-5, "{share} {found:?}");
+        }
     }
 
     #[test]

@@ -47,6 +47,9 @@ pub(super) enum Family {
     /// x = (v0 + 1 ± √((v0 − 3)(v0 + 1)))/(2 v0). The attractor is lost in a crisis at v0 = 4. The
     /// depth of a stop is this number less x.
     Logistic(f64),
+    /// x ↦ (x + v0)/2, with the depth 1 − v0² of a stop: it grazes at v0 = 1. The orbit x = v0
+    /// attracts from as far as this share of 1 − v0 alone.
+    Narrow(f64),
 }
 
 /// The logistic map without a graze.
@@ -109,6 +112,7 @@ impl Synthetic {
             Family::Nordmark(_) => cycle.depth = 1.0 - v0 + x,
             Family::SaddleNode => {}
             Family::Logistic(graze) => cycle.depth = graze - x,
+            Family::Narrow(_) => cycle.depth = 1.0 - v0 * v0,
         }
         cycle
     }
@@ -126,6 +130,9 @@ impl Synthetic {
             Family::SaddleNode => Some(x + 1.0 - v0 - x * x),
             Family::Logistic(graze) if x > graze => None,
             Family::Logistic(_) => Some(v0 * x * (1.0 - x)),
+            Family::Narrow(share) => {
+                ((x - v0).abs() <= share * (1.0 - v0)).then_some(0.5 * (x + v0))
+            }
         };
         next.filter(|x| x.abs() < 2.0)
     }

@@ -17,7 +17,7 @@ options! {
         /// and the outcome is not waited for. 0 where every v0 is held.
         glide: f64 = 0.0, in 0.0..=f64::INFINITY;
         /// The most v0 that are tried.
-        trials: u32 = 400, in 1..=1_000_000;
+        trials: u32 = 1_000, in 1..=1_000_000;
         /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM); by continuation as
         /// well.
         v_max: f64 = 100.0, in 1e-3..=1e6;
@@ -47,10 +47,16 @@ options! {
         /// The least share of the way to the predicted end that is taken at once: near its end
         /// stick-slip attracts from less and less far, and the share falls with each loss.
         least_share: f64 = 0.2, in 0.01..=0.9;
+        /// The least share of that way where stick-slip was lost again and again, and the end is
+        /// near.
+        gentle_share: f64 = 0.03, in 1e-3..=0.9;
+        /// Within this relative step of where periodic stick-slip is predicted to end, the end is
+        /// near.
+        near: f64 = 5e-3, in 1e-9..=0.1;
         /// Two v0 that differ by less than this share of the last step are near enough.
         near_enough: f64 = 0.75, in 0.5..=1.0;
         /// Stick-slip that survives so often where it had been lost, on a short way, is lost by
-        /// chance.
+        /// chance, unless its end is near.
         most_passed: u32 = 6, in 1..=1_000;
         /// The length of the short way of [`Self::most_passed`].
         short_way: f64 = 1e-3, in 1e-9..=0.1;
