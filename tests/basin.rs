@@ -3,8 +3,6 @@
 
 #[path = "common/map.rs"]
 mod map;
-#[path = "common/processes.rs"]
-mod processes;
 #[path = "common/program.rs"]
 mod program;
 
@@ -386,14 +384,10 @@ fn cells_of_maps_are_checked() {
 fn a_signal_ends_it() {
     let folder = Folder::new();
     let long = [&["basin"], &FLAGS[..], &FIG3A, &["--starts", "1048576"]].concat();
-    let mut command = folder.command(&long);
-    let piped = command
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let started = folder.start(&long);
     std::thread::sleep(std::time::Duration::from_millis(700));
-    processes::signal(piped.id(), "-INT");
-    let ended = piped.wait_with_output().unwrap();
+    started.signal("-INT");
+    let ended = started.ended();
     assert_eq!(ended.status.code(), Some(130));
     assert!(err(&ended).contains("interrupted: there is no share"));
 }

@@ -10,7 +10,7 @@ mod map;
 mod program;
 
 use map::{edit, settle};
-use program::{Folder, err, expect, out, pixels};
+use program::{Folder, err, expect, out, output, pixels};
 
 const SMALL: &str = "title = \"small\"\n[axes]\nmu_prime = [-0.1, -0.3]\nalpha_n = { from = -3, to = 1, points = 41 }\ntau = { from = 0, to = 12, points = 61 }\n";
 /// Large enough to be interrupted on any machine.
@@ -767,11 +767,8 @@ fn a_reader_that_has_gone_is_no_failure() {
         ("info missing.h5", ">err 2>&-"),
     ] {
         let line = format!("sleep 0.05; '{program}' {args} {redirect}");
-        let output = Command::new("sh")
-            .args(["-c", &line])
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
+        let mut shell = Command::new("sh");
+        let output = output(shell.args(["-c", &line]).current_dir(folder.path()));
         let said = std::fs::read_to_string(folder.path().join("err")).unwrap();
         assert!(!said.contains("panicked"), "{line}\n{said}");
         assert!(output.status.code().is_some_and(|code| code <= 2), "{line}");

@@ -27,7 +27,7 @@ use chance::Chance;
 use disk::{Change, Disk, Name, Number, lasting};
 use interposer::{SWEEP, copy, interposed};
 use map::datasets;
-use program::{Folder, err, out};
+use program::{Folder, err, out, output};
 use slipmap::store::tiles::{Manifest, format};
 use slipmap::sweep::Piece;
 use trace::Trace;
@@ -276,7 +276,7 @@ impl Known {
         let record = record.path().join("trace");
         let trace = Trace::of(folder.path(), &record, || {
             let mut command = interposed(&folder, case.args);
-            let done = command.env("FAULTS_TRACE", &record).output().unwrap();
+            let done = output(command.env("FAULTS_TRACE", &record));
             assert!(done.status.success(), "{:?}: {}", case.args, err(&done));
         });
         for args in case.then {

@@ -6,7 +6,6 @@ mod program;
 
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::process::Stdio;
 use std::sync::Mutex;
 
 use hdf5::File;
@@ -433,13 +432,13 @@ fn with_large_map() -> Folder {
 #[test]
 fn a_reader_that_has_read_enough_is_no_failure() {
     let folder = with_large_map();
-    let mut command = folder.command(&["export", "map.h5"]);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
+    let mut started = folder.start(&["export", "map.h5"]);
     let mut first = [0; 10];
-    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+    let mut text = started.child().stdout.take().unwrap();
+    text.read_exact(&mut first).unwrap();
+    drop(text);
     assert_eq!(&first, b"alpha_v,ta");
-    let ended = child.wait_with_output().unwrap();
+    let ended = started.ended();
     assert_eq!((ended.status.code(), err(&ended)), (Some(0), String::new()));
 }
 
@@ -450,16 +449,14 @@ fn a_text_is_written_whole_or_not_at_all() {
     let folder = with_large_map();
     std::fs::write(folder.path().join("map.csv"), "an older one").unwrap();
     let before = folder.files();
-    let mut command = folder.command(&["export", "map.h5", "-o", "map.csv", "--fresh"]);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().unwrap();
+    let mut child = folder.start(&["export", "map.h5", "-o", "map.csv", "--fresh"]);
     let part = folder.path().join(".map.csv.slipmap-part");
     while !part.metadata().is_ok_and(|part| part.len() > 0) {
+        assert!(child.goes_on());
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
-    // SAFETY: the child is not waited for yet, so the number is its own.
-    unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGINT) };
-    let ended = child.wait_with_output().unwrap();
+    child.signal("-INT");
+    let ended = child.ended();
     assert_eq!(ended.status.code(), Some(130), "{}", err(&ended));
     assert!(err(&ended).contains("interrupted: not everything is exported"));
     let kept = std::fs::read_to_string(folder.path().join("map.csv")).unwrap();

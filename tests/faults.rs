@@ -14,14 +14,13 @@ mod map;
 #[path = "common/program.rs"]
 mod program;
 
-use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 use std::time::{Duration, Instant};
 
 use interposer::{SWEEP, copy, interposed};
 use map::datasets;
-use program::{Folder, err, expect};
+use program::{Folder, Started, err, expect, output};
 
 const CASE: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[fixed]\nv0 = 0.1\nalpha_n = -10\ntau = 0.5\n\
                     [trace]\nuntil = 30\n";
@@ -39,7 +38,7 @@ fn faulty(folder: &Folder, args: &[&str], fault: Option<(u64, &str)>, count: &Pa
             .env("FAULTS_AT", at.to_string())
             .env("FAULTS_KIND", kind);
     }
-    command.output().unwrap()
+    output(&mut command)
 }
 
 /// What is tried.
@@ -245,33 +244,20 @@ fn stopped_soon(
     after: u64,
 ) {
     let mut command = interposed(folder, args);
-    // SAFETY: between fork and exec only the action of a signal is set. Under nohup it is ignored.
-    unsafe {
-        command.pre_exec(|| {
-            libc::signal(libc::SIGHUP, libc::SIG_DFL);
-            Ok(())
-        });
-    }
-    let mut child = command
-        .env("FAULTS_DELAY", "20")
-        .env("FAULTS_DELAY_ONCE", slow_once)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let command = command.env("FAULTS_DELAY", "20");
+    let mut child = Started::of(command.env("FAULTS_DELAY_ONCE", slow_once));
     let begun = Instant::now();
     while !when() {
-        assert!(child.try_wait().unwrap().is_none(), "{args:?} is over");
+        assert!(child.goes_on(), "{args:?} is over");
         assert!(begun.elapsed() < Duration::from_secs(30), "{args:?}");
         std::thread::sleep(Duration::from_millis(5));
     }
     // The work that is under way is slow.
     std::thread::sleep(Duration::from_millis(after));
-    assert!(child.try_wait().unwrap().is_none(), "{args:?} is over");
-    let kill = format!("kill -{name} {}", child.id());
+    assert!(child.goes_on(), "{args:?} is over");
     let sent = Instant::now();
-    Command::new("sh").args(["-c", &kill]).status().unwrap();
-    let ended = child.wait_with_output().unwrap();
+    child.signal(&format!("-{name}"));
+    let ended = child.ended();
     let took = sent.elapsed();
     println!("{args:?}: {name}, ended after {took:?}");
     // Opening a map is some fifty looks, after which a signal is heeded.

@@ -9,7 +9,7 @@ use serde_json::Value;
 #[path = "common/program.rs"]
 mod program;
 
-use program::{Folder, err, expect, out};
+use program::{Folder, Started, err, expect, out};
 
 const SMALL: &str =
     "title = \"small\"\n[axes]\nalpha_v = [-1, -0.5]\ntau = [1, 2, 3]\n[fixed]\nmu_prime = -0.3\n";
@@ -324,16 +324,11 @@ fn a_sweep_may_come_from_standard_input() {
     let folder = Folder::new();
     let given = |args: &[&str], text: &str| {
         let mut command = folder.command(args);
-        command.stdin(Stdio::piped());
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().unwrap();
-        child
-            .stdin
-            .take()
-            .unwrap()
-            .write_all(text.as_bytes())
-            .unwrap();
-        child.wait_with_output().unwrap()
+        let mut started = Started::of(command.stdin(Stdio::piped()));
+        let mut stdin = started.child().stdin.take().unwrap();
+        stdin.write_all(text.as_bytes()).unwrap();
+        drop(stdin);
+        started.ended()
     };
     expect(&given(&["run", "-", "-o", "map.h5"], SMALL), 0, "6 cells");
     expect(&given(&["plan", "-"], SMALL), 0, "cells        6");

@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use limited::End;
-use program::{Folder, expect};
+use program::{Folder, LONGEST, ends_within, expect};
 
 /// The longest that a command takes, the map of 10⁹ cells included.
 const PATIENCE: Duration = Duration::from_secs(3600);
@@ -61,7 +61,7 @@ const LONG_DELAYS: &str = "fields = [\"vc\"]\n[axes]\nalpha_v = [0.00165272, 0.0
 )]
 fn peak(mut command: Command) -> u64 {
     command.stdout(Stdio::null()).stdin(Stdio::null());
-    let child = command.spawn().unwrap();
+    let child = ends_within(&mut command, LONGEST).spawn().unwrap();
     let (end, bytes) = limited::wait(child.id() as libc::pid_t, PATIENCE);
     assert_eq!(end, End::Code(0), "{command:?}");
     bytes / 1_000_000

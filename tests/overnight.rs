@@ -15,7 +15,7 @@ mod map;
 mod program;
 
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use chance::{Chance, asked};
 use map::datasets;
-use program::{Folder, err, expect, out};
+use program::{Folder, LONGEST, ends_within, err, expect, out};
 use slipmap::maps::assembly::Missing;
 use slipmap::maps::maker::{Job, Merge, make, make_in_memory, make_shard, merge};
 use slipmap::store::describe::Provenance;
@@ -59,17 +59,12 @@ fn alone() -> MutexGuard<'static, ()> {
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn start(folder: &Folder, args: &[&str]) -> Child {
-    let mut command = folder.command(args);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().unwrap()
-}
-
-fn send(signal: &str, child: &Child) {
-    // The shell's own kill: a bare machine has no other.
-    let kill = format!("kill {signal} {}", child.id());
-    let status = Command::new("sh").args(["-c", &kill]).status().unwrap();
-    assert!(status.success());
+/// Runs a script in a shell that may mount what nobody else sees, where that is allowed. Where the
+/// tests are killed it ends by itself.
+fn in_own_mounts(folder: &Folder, script: &str) -> std::io::Result<Output> {
+    let mut shell = Command::new("unshare");
+    shell.args(["-rm", "sh", "-c", script]);
+    ends_within(shell.current_dir(folder.path()), LONGEST).output()
 }
 
 fn wait_for(what: &str, mut there: impl FnMut() -> bool) {
@@ -138,13 +133,13 @@ fn killed_runs_go_on_and_end_as_uninterrupted_ones() {
     let (mut killed, mut midway, mut complete, mut chance) = (0, 0, 0, Chance(6));
     while killed < kills {
         let before = done_so_far(&folder);
-        let mut child = start(&folder, &args);
+        let mut child = folder.start(&args);
         std::thread::sleep(Duration::from_millis(1 + chance.below(whole_run)));
-        if child.try_wait().unwrap().is_none() {
-            send("-KILL", &child);
+        if child.goes_on() {
+            child.signal("-KILL");
             killed += 1;
         }
-        child.wait().unwrap();
+        child.wait();
         if map.exists() {
             complete += 1;
             // Complete; or killed after the map got its name and before its tiles were gone, which
@@ -234,7 +229,7 @@ fn signals_stop_a_run_soon_and_keep_what_is_done() {
     let map = folder.path().join("large.h5");
     let mut done = 0;
     for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
-        let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+        let child = folder.start(&["run", "large.toml", "--save-every", "0.1"]);
         let before = tile_files(&map).len();
         wait_for("tile file", || tile_files(&map).len() > before);
         expect(
@@ -246,8 +241,8 @@ fn signals_stop_a_run_soon_and_keep_what_is_done() {
         expect(&status, 0, "large.h5: running");
         expect(&status, 0, "cells/s");
         let sent = Instant::now();
-        send(signal, &child);
-        let output = child.wait_with_output().unwrap();
+        child.signal(signal);
+        let output = child.ended();
         assert!(
             sent.elapsed() < Duration::from_secs(2),
             "{:?}",
@@ -320,7 +315,7 @@ fn slow_cells_do_not_delay_a_stop() {
     let slow = "fields = [\"outcome\"]\n[axes]\ntau = { from = 13, to = 14.9, points = 400 }\n[fixed]\nv0 = 0.1\nalpha_v = -1.45\n\
                 switch_on_phase = 0.0\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[simulation]\nhorizon = 1e9\n";
     let folder = Folder::with(&[("slow.toml", slow)]);
-    let child = start(&folder, &["run", "slow.toml"]);
+    let child = folder.start(&["run", "slow.toml"]);
     wait_for("manifest", || {
         folder
             .path()
@@ -329,8 +324,8 @@ fn slow_cells_do_not_delay_a_stop() {
     });
     std::thread::sleep(Duration::from_millis(300));
     let sent = Instant::now();
-    send("-TERM", &child);
-    let output = child.wait_with_output().unwrap();
+    child.signal("-TERM");
+    let output = child.ended();
     assert!(
         sent.elapsed() < Duration::from_secs(2),
         "{:?}",
@@ -345,18 +340,14 @@ fn slow_cells_do_not_delay_a_stop() {
 fn a_full_disk_is_named_and_nothing_is_lost() {
     let _alone = alone();
     let folder = Folder::with(&[("large.toml", LARGE)]);
-    let program = env!("CARGO_BIN_EXE_slipmap");
-    let limited = format!("ulimit -f 60; exec '{program}' run large.toml --save-every 0.3");
-    let output = Command::new("sh")
-        .args(["-c", &limited])
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
-    expect(&output, 1, "File too large");
-    expect(&output, 1, "the same command goes on");
+    let limited = "ulimit -f 60; exec \"$slipmap\" run large.toml --save-every 0.3";
+    let ended = folder.start_in_shell(limited).ended();
+    expect(&ended, 1, "File too large");
+    expect(&ended, 1, "the same command goes on");
 
     let (folder, _) = uninterrupted();
     std::fs::create_dir(folder.path().join("disk")).unwrap();
+    let program = env!("CARGO_BIN_EXE_slipmap");
     let script = format!(
         "mount -t tmpfs -o size=1500k tmpfs disk || exit 77
          '{program}' run night.toml -o disk/night.h5 --save-every 0; echo ended $?
@@ -366,11 +357,7 @@ fn a_full_disk_is_named_and_nothing_is_lost() {
          '{program}' run night.toml -o disk/night.h5; echo ended $?
          cp disk/night.h5 ."
     );
-    let output = Command::new("unshare")
-        .args(["-rm", "sh", "-c", &script])
-        .current_dir(folder.path())
-        .output();
-    match output {
+    match in_own_mounts(&folder, &script) {
         Ok(output) if output.status.success() => {
             expect(&output, 0, "No space left on device");
             expect(&output, 0, "ended 1");
@@ -387,10 +374,10 @@ fn a_folder_that_vanishes_is_named() {
     let _alone = alone();
     let folder = Folder::with(&[("large.toml", LARGE)]);
     let map = folder.path().join("large.h5");
-    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    let child = folder.start(&["run", "large.toml", "--save-every", "0.1"]);
     wait_for("tile file", || !tile_files(&map).is_empty());
     std::fs::rename(shards::root(&map), folder.path().join("gone")).unwrap();
-    let output = child.wait_with_output().unwrap();
+    let output = child.ended();
     expect(&output, 1, "cannot write large.h5.tiles/1-of-1");
     expect(&output, 1, "No such file or directory");
     // Back again, nothing is lost.
@@ -415,11 +402,7 @@ fn a_folder_that_cannot_be_written_to_is_named() {
          mount -o remount,rw disk
          '{program}' run night.toml -o disk/night.h5; echo ended $?"
     );
-    let output = Command::new("unshare")
-        .args(["-rm", "sh", "-c", &script])
-        .current_dir(folder.path())
-        .output();
-    match output {
+    match in_own_mounts(&folder, &script) {
         Ok(output) if output.status.success() => {
             expect(&output, 0, "Read-only file system");
             expect(&output, 0, "ended 1");
@@ -539,10 +522,10 @@ fn a_manifest_of_something_else_is_refused_with_the_difference() {
         ("fields.toml", &LARGE.replace(", \"frequency\"", "")),
     ]);
     let map = folder.path().join("large.h5");
-    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    let child = folder.start(&["run", "large.toml", "--save-every", "0.1"]);
     wait_for("tile file", || !tile_files(&map).is_empty());
-    send("-KILL", &child);
-    child.wait_with_output().unwrap();
+    child.signal("-KILL");
+    child.ended();
     for (sweep, says) in [
         ("other.toml", "tau: 10000 numbers from 0.05 to 9"),
         (
@@ -584,7 +567,7 @@ fn a_manifest_of_something_else_is_refused_with_the_difference() {
     // Without its manifest a folder is still its own: its files say what they belong to.
     std::fs::remove_file(&manifest).unwrap();
     let before = tile_files(&map).len();
-    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    let child = folder.start(&["run", "large.toml", "--save-every", "0.1"]);
     wait_for("tile file", || tile_files(&map).len() > before);
     // A folder that is being written to is not dropped.
     expect(
@@ -592,8 +575,8 @@ fn a_manifest_of_something_else_is_refused_with_the_difference() {
         1,
         "another run is writing",
     );
-    send("-INT", &child);
-    child.wait_with_output().unwrap();
+    child.signal("-INT");
+    child.ended();
     // What is not slipmap's is not touched.
     std::fs::write(
         folder.path().join("large.h5.tiles/1-of-1/notes.txt"),
@@ -685,21 +668,17 @@ fn a_replacement_that_was_stopped_goes_on() {
     let before = datasets(&map);
     let run = ["run", "large.toml", "-o", "map.h5", "--save-every", "0.1"];
     expect(&folder.run(&run), 2, "the map of another sweep");
-    let child = start(&folder, &[&run[..], &["--fresh"]].concat());
+    let child = folder.start(&[&run[..], &["--fresh"]].concat());
     wait_for("tile file", || !tile_files(&map).is_empty());
-    send("-INT", &child);
-    let output = child.wait_with_output().unwrap();
+    child.signal("-INT");
+    let output = child.ended();
     expect(&output, 130, "the same command without --fresh goes on");
     assert_eq!(datasets(&map), before);
     let kept = tile_files(&map).len();
-    let child = start(&folder, &run);
+    let child = folder.start(&run);
     wait_for("tile file", || tile_files(&map).len() > kept);
-    send("-INT", &child);
-    expect(
-        &child.wait_with_output().unwrap(),
-        130,
-        "the same command goes on",
-    );
+    child.signal("-INT");
+    expect(&child.ended(), 130, "the same command goes on");
     // The old map's own sweep does not drop them either.
     expect(
         &folder.run(&["run", "night.toml", "-o", "map.h5"]),
@@ -776,13 +755,10 @@ fn a_complete_map_is_computed_again() {
     let map = folder.path().join("night.h5");
     expect(&folder.run(&["run", "night.toml"]), 0, "night.h5: ");
     let expected = datasets(&map);
-    let mut child = start(
-        &folder,
-        &["run", "night.toml", "--fresh", "--save-every", "0"],
-    );
+    let mut child = folder.start(&["run", "night.toml", "--fresh", "--save-every", "0"]);
     wait_for("tile file", || !tile_files(&map).is_empty());
-    send("-KILL", &child);
-    child.wait().unwrap();
+    child.signal("-KILL");
+    child.wait();
     assert_eq!(datasets(&map), expected);
     let kept = tile_files(&map).len();
     assert!(kept > 0);
@@ -821,29 +797,20 @@ fn a_complete_map_is_computed_again() {
 fn obstacles_are_named() {
     let _alone = alone();
     let folder = Folder::with(&[("night.toml", NIGHT)]);
-    let program = env!("CARGO_BIN_EXE_slipmap");
-    let shell = |script: &str| {
-        Command::new("sh")
-            .args(["-c", script])
-            .current_dir(folder.path())
-            .output()
-            .unwrap()
-    };
+    let shell = |script: &str| folder.start_in_shell(script).ended();
     std::fs::write(
         folder.path().join("night.h5.1-of-2.log"),
         vec![b' '; 5 << 20],
     )
     .unwrap();
-    let unloggable = shell(&format!(
-        "ulimit -f 9000; exec '{program}' run night.toml --shard 1/2"
-    ));
+    let unloggable = shell("ulimit -f 9000; exec \"$slipmap\" run night.toml --shard 1/2");
     expect(&unloggable, 0, "shard 1 of 2 is complete");
     expect(
         &folder.run(&["run", "night.toml", "--shard", "2/2"]),
         0,
         "is complete",
     );
-    let small = shell(&format!("ulimit -f 60; exec '{program}' merge night.h5"));
+    let small = shell("ulimit -f 60; exec \"$slipmap\" merge night.h5");
     expect(&small, 1, "File too large");
     expect(&folder.run(&["merge", "night.h5"]), 0, "night.h5: ");
     for args in [
@@ -1081,21 +1048,44 @@ fn links_and_pipes_in_the_place_of_tiles_are_refused() {
 }
 
 /// A whole run and shards of one map do not work side by side; a hang-up stops a run in order,
-/// unless it was ignored.
-#[cfg(unix)]
+/// unless it was ignored before, as by `nohup`.
 #[test]
 fn a_hang_up_stops_a_run_unless_it_is_ignored() {
     let _alone = alone();
     let folder = Folder::with(&[("large.toml", LARGE)]);
     let map = folder.path().join("large.h5");
-    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    let child = folder.start(&["run", "large.toml", "--save-every", "0.1"]);
     wait_for("tile file", || !tile_files(&map).is_empty());
-    send("-HUP", &child);
-    let ended = child.wait_with_output().unwrap();
+    child.signal("-HUP");
+    let ended = child.ended();
     expect(&ended, 129, "interrupted: large.h5 is not complete");
     expect(
         &folder.run(&["run", "large.toml", "--shard", "1/2"]),
         2,
         "holds what a run of the whole map has computed",
     );
+    let ignoring = "trap '' HUP; exec \"$slipmap\" run large.toml --save-every 0.1";
+    let mut child = folder.start_in_shell(ignoring);
+    for _ in 0..2 {
+        let before = tile_files(&map).len();
+        wait_for("tile file", || tile_files(&map).len() > before);
+        assert!(child.goes_on());
+        child.signal("-HUP");
+    }
+    child.signal("-TERM");
+    expect(&child.ended(), 143, "interrupted: large.h5 is not complete");
+}
+
+/// What is started goes by its own signals, not by those that the tests were started with.
+#[test]
+fn tests_under_nohup_set_the_signals_that_they_test() {
+    let _alone = alone();
+    let ignoring = "trap '' HUP INT QUIT; exec \"$0\" \"$@\"";
+    let mut again = Command::new("sh");
+    again
+        .args(["-c", ignoring])
+        .arg(std::env::current_exe().unwrap());
+    again.args(["--exact", "a_hang_up_stops_a_run_unless_it_is_ignored"]);
+    let ended = ends_within(&mut again, LONGEST).output().unwrap();
+    expect(&ended, 0, "1 passed");
 }

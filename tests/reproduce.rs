@@ -6,11 +6,11 @@ mod program;
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::Output;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use program::{Folder, err, expect, out};
+use program::{Folder, LONGEST, Started, err, expect, out};
 use serde_json::Value;
 use slipmap::linear::lobes::LobeControl;
 use slipmap::store::{MapFile, TraceFile};
@@ -27,15 +27,13 @@ fn runs() -> &'static Runs {
     RUNS.get_or_init(|| {
         let folder = Folder::new();
         let start = |args: &[&str]| {
-            let mut command =
-                folder.command(&[&["reproduce", "--quick", "--quiet"], args].concat());
-            let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
-            command.spawn().unwrap()
+            let args = [&["reproduce", "--quick", "--quiet"], args].concat();
+            Started::within(&mut folder.command(&args), LONGEST)
         };
         let kept = start(&["--json", "-o", "letter.html", "--keep", "kept"]);
         let told = start(&["--threads", "1", "-o", "other.html"]);
-        let done = |child: Child| {
-            let output = child.wait_with_output().unwrap();
+        let done = |started: Started| {
+            let output = started.ended();
             assert!(output.status.success(), "{}", err(&output));
             assert_eq!(err(&output), "");
             out(&output)
@@ -500,28 +498,15 @@ fn a_folder_that_takes_no_files_is_told() {
     expect(&output, 1, "cannot write /proc/self/letter.html");
 }
 
-fn interrupt(child: &Child) {
-    let id = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &id])
-            .status()
-            .unwrap()
-            .success()
-    );
-}
-
 #[test]
 fn a_signal_ends_it_soon_and_leaves_no_page() {
     let folder = Folder::new();
     for after in [300, 4000] {
-        let mut command = folder.command(&["reproduce", "-o", "letter.html", "--keep", "kept"]);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let child = child.spawn().unwrap();
+        let child = folder.start(&["reproduce", "-o", "letter.html", "--keep", "kept"]);
         std::thread::sleep(Duration::from_millis(after));
-        interrupt(&child);
+        child.signal("-INT");
         let start = Instant::now();
-        let output = child.wait_with_output().unwrap();
+        let output = child.ended();
         expect(&output, 130, "interrupted: no page is written");
         assert!(
             start.elapsed() < Duration::from_secs(15),

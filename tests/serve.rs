@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 #[cfg(target_os = "linux")]
 use processes::peak;
-use program::{Folder, out};
+use program::{Folder, out, signal};
 use server::{Answer, Serving, decoded};
 use slipmap::linear::Crossings;
 use slipmap::model::Groups;
@@ -465,11 +465,8 @@ fn a_browser_is_led_to_the_link_by_a_file_of_the_users_own() {
     let text = std::fs::read_to_string(&page).unwrap();
     let link = format!("http://{}/?token={}", serving.address, serving.token);
     assert!(text.contains(&link), "{text}");
-    let id = serving.child.id().to_string();
-    let sent = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
-    assert!(sent.unwrap().success() && serving.child.wait().unwrap().success());
+    signal(serving.child.id(), "-INT");
+    assert!(serving.child.wait().unwrap().success());
     assert!(!page.exists(), "it goes with the server");
 }
 
@@ -494,12 +491,8 @@ fn a_signal_ends_it_soon() {
         + &PLANE.replace("12.0, points = 80", "1e5, points = 9000");
     let _waiting = asking(&serving, &text);
     std::thread::sleep(Duration::from_millis(300));
-    let id = serving.child.id().to_string();
     let begun = Instant::now();
-    let sent = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
-    assert!(sent.unwrap().success());
+    signal(serving.child.id(), "-INT");
     let ended = serving.child.wait().unwrap();
     assert!(
         ended.success() && begun.elapsed() < Duration::from_secs(2),

@@ -31,8 +31,8 @@ use std::time::{Duration, Instant};
 use brute::{Window, check, complete};
 use chance::Chance;
 use decoded::Decoded;
-use processes::{Running, until};
-use program::{Folder, err, expect};
+use processes::until;
+use program::{Folder, Started, err, expect, signal};
 use serde_json::Value;
 use server::Serving;
 use slipmap::linear::Crossings;
@@ -402,7 +402,7 @@ fn a_map_grows_while_it_is_looked_at() {
         "--save-every",
         "0.1",
     ];
-    let mut run = Running(folder.command(&args).spawn().unwrap());
+    let mut run = folder.start(&args);
     let tiles = || {
         let files = fs::read_dir(folder.path().join("slow.h5.tiles/1-of-1"));
         let names = files
@@ -414,11 +414,11 @@ fn a_map_grows_while_it_is_looked_at() {
         names.filter(|name| name.starts_with("tiles-")).count()
     };
     let go_on_until = |count: usize| {
-        processes::signal(run.0.id(), "-CONT");
+        run.signal("-CONT");
         while tiles() < count {
             std::thread::sleep(Duration::from_millis(5));
         }
-        processes::signal(run.0.id(), "-STOP");
+        run.signal("-STOP");
     };
     go_on_until(2);
     let state = |wanted: &str| {
@@ -452,8 +452,8 @@ fn a_map_grows_while_it_is_looked_at() {
     let told = serving.get(&format!("/api/v1/maps/{id}")).json();
     assert_eq!(told["state"], "running");
     assert!(told["cells_done"].as_u64().unwrap() < told["cells"].as_u64().unwrap());
-    run.0.kill().unwrap();
-    run.0.wait().unwrap();
+    run.signal("-KILL");
+    run.wait();
     until(10, "it is interrupted", || state("interrupted"));
     let curves = format!("/api/v1/maps/{id}/curves?x=alpha_v&y=tau&at=mu_prime:3");
     let curves = Decoded::of(&serving.get(&curves)).head["curves"].clone();
@@ -676,7 +676,7 @@ fn processes_that_read_maps_come_and_go() {
     let [reader] = readers()[..] else {
         panic!("{:?}", readers())
     };
-    processes::signal(reader, "-STOP");
+    signal(reader, "-STOP");
     std::thread::scope(|scope| {
         let asking = scope.spawn(|| serving.get(&path));
         std::thread::sleep(Duration::from_millis(300));
@@ -685,7 +685,7 @@ fn processes_that_read_maps_come_and_go() {
             200,
             "others are answered"
         );
-        processes::signal(reader, "-KILL");
+        signal(reader, "-KILL");
         let answer = asking.join().unwrap();
         assert_eq!(answer.status, 502, "{}", answer.head);
         assert!(answer.json()["detail"].as_str().unwrap().contains("ended"));
@@ -893,7 +893,7 @@ fn a_socket_is_for_tunnels() {
         2,
         "no socket is there",
     );
-    processes::signal(serving.child.id(), "-TERM");
+    signal(serving.child.id(), "-TERM");
     serving.child.wait().unwrap();
     assert!(!path.exists());
     // One that was left behind is replaced.
@@ -921,13 +921,10 @@ fn options_say_what_they_mean() {
         let mut command = folder.command(&[&["serve", "--port", "0"], args].concat());
         let found = std::env::join_paths([path, Path::new("/usr/bin"), Path::new("/bin")]).unwrap();
         command.env("PATH", found);
-        command
-            .stdout(std::process::Stdio::piped())
-            .stderr(std::process::Stdio::piped());
-        let child = command.spawn().unwrap();
+        let child = Started::of(&mut command);
         std::thread::sleep(Duration::from_millis(700));
-        processes::signal(child.id(), "-INT");
-        child.wait_with_output().unwrap()
+        child.signal("-INT");
+        child.ended()
     };
     let output = ends(&["--open"], folder.path());
     let link = String::from_utf8(output.stdout).unwrap();

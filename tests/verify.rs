@@ -193,18 +193,9 @@ fn changed_maps_do_not() {
         "abscissa: chunks cannot be read: filters of a chunk are to be skipped",
     );
     // Whoever reads the report may be gone: what was found stays found.
-    let mut child = folder
-        .command(&["verify", "changed.h5"])
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    expect(
-        &child.wait_with_output().unwrap(),
-        1,
-        "changed.h5: 2 faults",
-    );
+    let mut started = folder.start(&["verify", "changed.h5"]);
+    drop(started.child().stdout.take());
+    expect(&started.ended(), 1, "changed.h5: 2 faults");
     for (bad, code) in [("map.toml", 2), ("none.h5", 2)] {
         expect(&folder.run(&["verify", bad]), code, bad);
     }

@@ -8,6 +8,8 @@ use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use super::program::{LONGEST, ends_within};
+
 /// Virtual memory of a process, KiB.
 const MEMORY: u64 = 2 << 20;
 /// What takes longer hangs.
@@ -46,7 +48,8 @@ pub(crate) fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> E
     let said = folder.join("said");
     let out = File::create(&said).unwrap();
     let limited = format!("ulimit -v {MEMORY}; ulimit -c 0; exec \"$0\" \"$@\"");
-    let child = Command::new("sh")
+    let mut command = Command::new("sh");
+    command
         .args(["-c", &limited, env!("CARGO_BIN_EXE_slipmap")])
         .args(args)
         .current_dir(folder)
@@ -54,9 +57,8 @@ pub(crate) fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> E
         .envs(variables.iter().copied())
         .stdin(Stdio::null())
         .stderr(out.try_clone().unwrap())
-        .stdout(out)
-        .spawn()
-        .unwrap();
+        .stdout(out);
+    let child = ends_within(&mut command, LONGEST).spawn().unwrap();
     let (end, peak) = wait(child.id() as libc::pid_t, PATIENCE);
     Ended {
         end,

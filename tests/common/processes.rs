@@ -3,7 +3,6 @@
 #![allow(dead_code, reason = "no test uses all of it")]
 
 use std::fs;
-use std::process::Child;
 use std::time::{Duration, Instant};
 
 /// The number behind a name in what the system tells of a process.
@@ -49,23 +48,4 @@ pub(crate) fn until(patience: u64, what: &str, mut is_so: impl FnMut() -> bool) 
 pub(crate) fn is_there(id: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{id}/status"));
     status.is_ok_and(|status| !status.contains("State:\tZ"))
-}
-
-/// Sends a signal.
-pub(crate) fn signal(id: u32, name: &str) {
-    let sent = std::process::Command::new("kill")
-        .args([name, &id.to_string()])
-        .status();
-    assert!(sent.unwrap().success());
-}
-
-/// A process that ends with this, also where a test fails while it is stopped.
-pub(crate) struct Running(pub Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // It may have ended already.
-        drop(self.0.kill());
-        drop(self.0.wait());
-    }
 }

@@ -7,7 +7,7 @@ use std::net::TcpStream;
 use std::process::{Child, ChildStdout, Stdio};
 use std::time::Duration;
 
-use super::program::Folder;
+use super::program::{Folder, LONGEST, ends_within};
 
 /// A server of the real program.
 pub(crate) struct Serving {
@@ -50,11 +50,8 @@ impl Serving {
 
     /// By a command.
     pub(crate) fn of(command: &mut std::process::Command) -> Self {
-        let mut child = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        command.stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut child = ends_within(command, LONGEST).spawn().unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap());
         let mut link = String::new();
         lines.read_line(&mut link).unwrap();
