@@ -95,7 +95,6 @@ make_tarball() {
     mkdir -p "$folder"
     cp -r target/release/slipmap "$texts" sweeps README.md CHANGELOG.md CITATION.cff LICENSE-APACHE LICENSE-MIT "$folder/"
     cp target/licences-of-others "$folder/LICENSES-OF-OTHERS"
-    strip "$folder/slipmap" 2>/dev/null || true
     install_text "$folder/slipmap" >"$folder/INSTALL.txt"
     # Equal contents make equal bytes, but for the program itself.
     tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" \
@@ -130,7 +129,8 @@ TEXT
 
 make_deb() {
     have dpkg || die "a package for Debian is made on Debian or Ubuntu"
-    cargo_tool cargo-deb "$CARGO_DEB" || die "cargo-deb cannot be built"
+    # What it compresses takes long without optimisation.
+    cargo_tool cargo-deb "$CARGO_DEB" --config profile.release.opt-level=2 || die "cargo-deb cannot be built"
     build
     debian_texts
     cargo deb --no-build --strip --output "$files/"

@@ -112,6 +112,7 @@ need_cargo() {
 }
 
 # cargo_tool PROGRAM VERSION FLAG…: a program of the crate of that name, built once into target/tools; false where it cannot be.
+# It runs for seconds, so it is built without the optimisation that its own profile asks for, which takes minutes.
 cargo_tool() {
     local program=$1 version=$2
     shift 2
@@ -119,7 +120,9 @@ cargo_tool() {
     case ":$PATH:" in *":$SLIPMAP_ROOT/target/tools/bin:"*) ;; *) export PATH="$SLIPMAP_ROOT/target/tools/bin:$PATH" ;; esac
     have "$program" && return
     say "building $program into target/tools"
-    cargo install --quiet --locked --root "$SLIPMAP_ROOT/target/tools" "$@" "$program@$version" >&2
+    CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
+        CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_STRIP=true \
+        cargo install --quiet --locked --root "$SLIPMAP_ROOT/target/tools" "$@" "$program@$version" >&2
 }
 
 # Rust's standard library for WebAssembly, from where Rust comes from; false where it cannot be had.
