@@ -5,7 +5,7 @@
 mod program;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -514,5 +514,88 @@ fn a_signal_ends_it_soon_and_leaves_no_page() {
             start.elapsed()
         );
         assert_eq!(folder.files(), ["kept"]);
+    }
+}
+
+/// A copy of what the run kept, as an earlier run of the same command would have left it.
+fn kept_copy() -> (Folder, PathBuf) {
+    let folder = Folder::new();
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).unwrap();
+    for entry in std::fs::read_dir(runs().folder.path().join("kept")).unwrap() {
+        let entry = entry.unwrap();
+        std::fs::copy(entry.path(), kept.join(entry.file_name())).unwrap();
+    }
+    (folder, kept)
+}
+
+const AGAIN: [&str; 5] = ["reproduce", "--quick", "--json", "--keep", "kept"];
+
+/// After an interruption the same command goes on: maps that are there are kept, and the claims are
+/// those of one run. After completion it says the same once more.
+#[test]
+fn the_same_command_goes_on_with_what_is_kept() {
+    let (folder, kept) = kept_copy();
+    let written = |name: &str| std::fs::metadata(kept.join(name)).unwrap().modified();
+    let names = [
+        "fig2a.h5",
+        "fig2a.svg",
+        "velocity_smooth.h5",
+        "velocity_smooth.svg",
+    ];
+    let before = names.map(|name| written(name).unwrap());
+    for name in [
+        "fig3a.svg",
+        "fig3b.toml",
+        "fig3b.h5",
+        "fig3b.svg",
+        "velocity_at_fig3b.h5",
+    ] {
+        std::fs::remove_file(kept.join(name)).unwrap();
+    }
+    std::fs::remove_file(kept.join("velocity_at_fig3b.svg")).unwrap();
+    // Stopped once more after the first motion.
+    let mut child = Started::within(&mut folder.command(&AGAIN), LONGEST);
+    while !kept.join("fig3b.h5").exists() {
+        assert!(child.goes_on(), "{}", err(&child.ended()));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.signal("-INT");
+    expect(&child.ended(), 130, "the same command goes on from there");
+    for _ in 0..2 {
+        let again = folder.run(&AGAIN);
+        assert_eq!(again.status.code(), Some(0), "{}", err(&again));
+        let told: Value = serde_json::from_str(&out(&again)).unwrap();
+        assert_eq!(told["claims"], runs().json["claims"]);
+        assert_eq!(names.map(|name| written(name).unwrap()), before);
+    }
+    let names = |path: &Path| {
+        let entries = std::fs::read_dir(path).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(&kept), names(&runs().folder.path().join("kept")));
+}
+
+/// Of what an earlier run left, what is not its own any more is left as it is.
+#[test]
+fn what_took_the_place_of_a_kept_file_is_refused() {
+    let (folder, kept) = kept_copy();
+    for (name, by) in [
+        // Another motion, another map, a picture that somebody has worked on.
+        ("fig3a.h5", Some("fig3b.h5")),
+        ("fig2a.h5", Some("fig2b.h5")),
+        ("fig3a.svg", Some("fig3b.svg")),
+        ("fig2a.h5", None),
+        ("fig2a.toml", None),
+    ] {
+        let (path, before) = (kept.join(name), std::fs::read(kept.join(name)).unwrap());
+        let other = by.map_or(b"mine".to_vec(), |by| std::fs::read(kept.join(by)).unwrap());
+        std::fs::write(&path, &other).unwrap();
+        let says = format!("kept/{name} is already there, and not of this run");
+        expect(&folder.run(&AGAIN), 2, &says);
+        assert!(std::fs::read(&path).unwrap() == other, "{name}");
+        std::fs::write(&path, before).unwrap();
     }
 }

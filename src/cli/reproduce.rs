@@ -215,7 +215,8 @@ fn failure(error: LetterError, args: &Args, signals: &Signals) -> Failure {
         LetterError::Stopped => signals.interrupted(match &args.keep {
             None => "nothing is written".to_owned(),
             Some(folder) => format!(
-                "no page is written; what is complete is kept in {}",
+                "no page is written; what is computed is kept in {}, the same command goes on \
+                 from there",
                 folder.display()
             ),
         }),

@@ -14,10 +14,13 @@ use crate::slip::stop::Stop;
 use crate::store::describe::Provenance;
 use crate::store::map_file::Plane;
 use crate::store::schema::root;
-use crate::store::{MapFile, Output, TraceFile, trace_file};
+use crate::store::tiles::shards;
+use crate::store::trace_reader::case_of;
+use crate::store::{MapFile, Output, trace_file};
 use crate::sweep::cells::samples::Most;
 use crate::sweep::cells::trace::MOST_SAMPLES;
 use crate::sweep::events::Attended;
+use crate::sweep::input::case_file::is_case_file;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::{CaseSpec, Field, Plan, SweepSpec, Trace};
 
@@ -149,14 +152,33 @@ impl<'a> Workshop<'a> {
         let spec: SweepSpec = text.parse().map_err(LetterError::spec(source.name))?;
         let title = spec.title.clone();
         let plan = Plan::new(spec).map_err(LetterError::spec(source.name))?;
-        replaceable(&path, &plan)?;
-        let job = Job::new(&path, self.threads, self.provenance);
-        maker::make(&Arc::new(plan), &job, self.attended)?;
+        if !self.is_finished(&path, &plan)? {
+            let job = Job::new(&path, self.threads, self.provenance);
+            maker::make(&Arc::new(plan), &job, self.attended)?;
+        }
         let map = MapFile::open(&path)?;
         let options = PictureOptions::default();
         let drawn = picture::draw(&map, &path.with_extension("svg"), &options)?;
         self.keep(source, (title, text, "run"), drawn)?;
         Ok(map)
+    }
+
+    /// Whether the whole map of a plan, from this very program, stands at `path` with nothing left
+    /// to do. What another version has computed is computed again.
+    fn is_finished(&self, path: &Path, plan: &Plan) -> Result<bool, LetterError> {
+        if !there(path) || !shards::present(path)?.is_empty() {
+            return Ok(false);
+        }
+        let map = MapFile::open(path)?;
+        let (hash, by) = (plan.hash(), self.provenance);
+        let facts = [
+            (root::PLAN_HASH, &hash),
+            (root::SWEEP, &plan.spec.text),
+            (root::PROGRAM_VERSION, &by.program_version),
+            (root::GIT_REVISION, &by.git_revision),
+        ];
+        let told = |(name, value): (&str, &String)| map.root_text(name).as_ref() == Some(value);
+        Ok(!map.is_partial() && facts.into_iter().all(told))
     }
 
     /// The motion of a case, computed and drawn.
@@ -168,10 +190,6 @@ impl<'a> Workshop<'a> {
         let most = Most::Refused(MOST_SAMPLES);
         let trace = Trace::within(&spec, most, &self.stop())?;
         if self.kept {
-            let known = !there(&path) || TraceFile::open(&path).is_ok_and(|t| t.spec == spec);
-            if !known {
-                return Err(LetterError::Foreign { path });
-            }
             trace_file::write(&spec, &trace, Output::claim(&path)?, self.provenance)?;
         }
         let options = PictureOptions::default();
@@ -184,13 +202,19 @@ impl<'a> Workshop<'a> {
     /// The path of the file of a source, and whether the file already exists.
     ///
     /// # Errors
-    /// When another file has this name, or has the name of the map or picture that belongs to it.
+    /// When another file has this name, or the name of its map, trace or picture.
     fn place(&self, source: &Source) -> Result<(PathBuf, bool), LetterError> {
         let path = self.folder.join(format!("{}.toml", source.name));
         let text = source.text(self.quick);
         let same = std::fs::read_to_string(&path).is_ok_and(|there| there == text);
-        let names = ["toml", "h5", "svg"].map(|extension| path.with_extension(extension));
-        match names.into_iter().find(|path| !same && there(path)) {
+        let [data, picture] = ["h5", "svg"].map(|extension| path.with_extension(extension));
+        let foreign = match there(&data) {
+            // What is written first is there first.
+            _ if !same => [path.clone(), data, picture].into_iter().find(|p| there(p)),
+            false => Some(picture).filter(|picture| there(picture)),
+            true => (!is_of(&data, source.name, &text)?).then_some(data),
+        };
+        match foreign {
             Some(path) => Err(LetterError::Foreign { path }),
             None => Ok((path, same)),
         }
@@ -209,7 +233,9 @@ impl<'a> Workshop<'a> {
     fn written(&self, source: &Source, text: &str) -> Result<PathBuf, LetterError> {
         let (path, same) = self.place(source)?;
         if !same {
-            std::fs::write(&path, text).map_err(LetterError::io("write", &path))?;
+            let output = Output::claim(&path)?;
+            std::fs::write(output.part(), text).map_err(LetterError::io("write", &path))?;
+            output.commit()?;
         }
         Ok(path.with_extension("h5"))
     }
@@ -230,7 +256,12 @@ impl<'a> Workshop<'a> {
             () => format!("{name}.toml"),
         };
         if self.kept {
-            picture.save()?;
+            let path = self.folder.join(format!("{name}.svg"));
+            match holds(&path, picture.bytes()) {
+                Some(true) => {}
+                Some(false) => return Err(LetterError::Foreign { path }),
+                None => picture.save()?,
+            }
         }
         let figure = Figure {
             name,
@@ -251,20 +282,22 @@ fn there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// Checks that an existing map may be replaced: it must be one of the same sweep.
-fn replaceable(path: &Path, plan: &Plan) -> Result<(), LetterError> {
-    if !there(path) {
-        return Ok(());
+/// Whether a file is the map or the trace of a sweep or case.
+fn is_of(path: &Path, name: &'static str, text: &str) -> Result<bool, LetterError> {
+    if is_case_file(text) {
+        return Ok(case_of(path).is_ok_and(|case| case == text));
     }
+    let spec = text.parse().map_err(LetterError::spec(name))?;
+    let hash = Plan::new(spec).map_err(LetterError::spec(name))?.hash();
     let map = MapFile::open(path);
-    let same = map
-        .is_ok_and(|map| map.root_text(root::PLAN_HASH).as_deref() == Some(plan.hash().as_str()));
-    match same {
-        true => Ok(()),
-        false => Err(LetterError::Foreign {
-            path: path.to_owned(),
-        }),
-    }
+    Ok(map.is_ok_and(|map| map.root_text(root::PLAN_HASH) == Some(hash)))
+}
+
+/// Whether a file holds just these bytes; none where there is none.
+fn holds(path: &Path, bytes: &[u8]) -> Option<bool> {
+    let found = path.symlink_metadata().ok()?;
+    let as_long = found.is_file() && found.len() == bytes.len() as u64;
+    Some(as_long && std::fs::read(path).is_ok_and(|found| found == bytes))
 }
 
 /// The values of the axes before a plane.
@@ -301,6 +334,7 @@ pub(super) fn column(map: &MapFile, field: Field) -> Result<Vec<f64>, LetterErro
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::letter::{limits, motions, robustness, short_delay, stability};
 
     /// The replaced text occurs in each source, and the result is a sweep or a case.
@@ -321,9 +355,9 @@ mod tests {
             }
             for quick in [false, true] {
                 let text = source.text(quick);
-                match crate::sweep::input::case_file::is_case_file(&text) {
-                    true => drop(text.parse::<crate::sweep::CaseSpec>().unwrap()),
-                    false => drop(text.parse::<crate::sweep::SweepSpec>().unwrap()),
+                match is_case_file(&text) {
+                    true => drop(text.parse::<CaseSpec>().unwrap()),
+                    false => drop(text.parse::<SweepSpec>().unwrap()),
                 }
             }
         }
