@@ -14,6 +14,7 @@ use program::{Folder, LONGEST, Started, err, expect, out};
 use serde_json::Value;
 use slipmap::linear::lobes::LobeControl;
 use slipmap::store::{MapFile, TraceFile};
+use slipmap::sweep::Field;
 
 /// A quick run with everything kept, and one on one thread for people.
 struct Runs {
@@ -75,9 +76,15 @@ const EXPECTED: [(&str, &str, &str, f64, f64); 28] = [
         0.508_987_32,
         1e-7,
     ),
-    ("fig2a", "confirmed", "area at -0.6", 0.0427, 1e-4),
-    ("fig2b", "confirmed", "area at -0.05", 10.077, 1e-2),
-    ("smaller_area", "refined", "ratio at -0.05", 1.171, 1e-2),
+    ("fig2a", "confirmed", "area at -0.6", 0.042_674_895, 1e-9),
+    ("fig2b", "confirmed", "area at -0.05", 10.074_822_018, 1e-8),
+    (
+        "smaller_area",
+        "refined",
+        "ratio at -0.05",
+        11.790_735_020 / 10.074_822_018,
+        1e-9,
+    ),
     (
         "velocity_limit",
         "refined",
@@ -97,8 +104,8 @@ const EXPECTED: [(&str, &str, &str, f64, f64); 28] = [
         "short_velocity",
         "confirmed",
         "shortest at -0.1",
-        0.7947,
-        1e-3,
+        0.794_720_947,
+        1e-9,
     ),
     ("short_load", "confirmed", "off at 0.0001", 0.0, 1e-8),
     ("fig3a", "confirmed", "last_release", 97.029_009_396, 1e-8),
@@ -241,6 +248,29 @@ fn stick_slip_is_looked_at_where_sliding_is_stable() {
     assert_eq!(evidence[1], "velocity_at_fig3b_lobe");
 }
 
+/// The stable area of a map at a slope by its cells, of which those at an edge have half of
+/// themselves in the window.
+fn area_of_cells(figure: &str, slope: f64) -> f64 {
+    let path = format!("kept/{figure}.h5");
+    let map = MapFile::open(&runs().folder.path().join(path)).unwrap();
+    let slopes = &map.axes()[0].values;
+    let at = slopes.iter().position(|value| *value == slope).unwrap();
+    let plane = map.plane(Field::NUnstable, &[at, 0, 0], (1, 2), usize::MAX);
+    let plane = plane.unwrap();
+    let widths = |axis: &[f64]| -> Vec<f64> {
+        let last = axis.len() - 1;
+        let ends = (0..=last).map(|i| (axis[i.saturating_sub(1)], axis[last.min(i + 1)]));
+        ends.map(|(from, to)| 0.5 * (to - from)).collect()
+    };
+    let [gains, delays] = [&plane.rows, &plane.columns].map(|axis| widths(axis));
+    let cells = plane.cells.chunks(delays.len()).zip(gains);
+    let rows = cells.map(|(row, gain)| {
+        let stable = row.iter().zip(&delays).filter(|(count, _)| **count == 0.0);
+        gain * stable.map(|(_, delay)| delay).sum::<f64>()
+    });
+    rows.sum()
+}
+
 /// Known velocities, errors and times, within the errors that stand beside them.
 #[test]
 fn values_are_within_their_errors() {
@@ -255,6 +285,20 @@ fn values_are_within_their_errors() {
             "rule_of_thumb",
             "at Fig. 3(b), load control",
             15.855_550_61 / 3.446_001_38,
+        ),
+        // From a program of its own, see the tests of the files of these claims.
+        ("fig2a", "area at -0.1", 8.151_695_663),
+        ("fig2b", "area at -2", 1.028_202_851),
+        ("short_velocity", "shortest", 6.126_661_219_073),
+        (
+            "less_robust",
+            "stable share at -0.3: velocity",
+            0.058_017_732,
+        ),
+        (
+            "less_robust",
+            "stable delays at -0.3: load",
+            10.945_446_114_945,
         ),
         ("minimal_load_gain", "gain at -1", 1.5),
         ("minimal_load_gain", "gain at -5", 17.5),
@@ -279,7 +323,12 @@ fn values_are_within_their_errors() {
     for slope in ["-0.05", "-0.1", "-0.2"] {
         for figure in ["fig2a", "fig2b"] {
             let (area, error) = value(figure, &format!("area at {slope}"));
-            assert!(error < 1e-3 * area, "{figure} {slope}: {area} {error}");
+            assert!(error < 1e-9 * area, "{figure} {slope}: {area} {error}");
+            let cells = area_of_cells(figure, slope.parse().unwrap());
+            assert!(
+                (cells / area - 1.0).abs() < 1e-3,
+                "{figure} {slope}: {area} {cells}"
+            );
         }
     }
     let off = |tau: &str| value("short_load", &format!("off at {tau}")).0;

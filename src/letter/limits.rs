@@ -5,6 +5,7 @@
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
+use super::one_variable::minimum;
 use super::workshop::{Source, Workshop, planes, source};
 use crate::linear::Crossings;
 use crate::linear::lobes::{
@@ -261,9 +262,9 @@ impl LoadGains {
 /// Short delays.
 #[derive(Debug, Clone, PartialEq)]
 struct ShortDelays {
-    /// Slopes, the shortest delay that velocity control stabilises at any gain (infinite where
-    /// there is none), and its error.
-    velocity: Vec<(f64, f64, f64)>,
+    /// Slopes, and the shortest delay that velocity control stabilises at any gain (infinite where
+    /// there is none).
+    velocity: Vec<(f64, f64)>,
     /// Slopes, delays, and the gain from which load control stabilises, divided by the letter's.
     load: Vec<(f64, f64, f64)>,
 }
@@ -272,31 +273,36 @@ struct ShortDelays {
 const SHORT: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 /// Gains tried at each slope, in each of three ranges.
 const GAINS: u32 = 20_000;
+/// The relative error of the shortest delay: its minimum over the gain is found to the last bits.
+const SHORTEST_ERROR: f64 = 1e-9;
 /// The slopes at which the gains are tried.
 const SHORT_SLOPES: [f64; 9] = [-0.005, -0.02, -0.05, -0.1, -0.2, -0.3, -0.5, -0.7, -1.0];
 
 impl ShortDelays {
-    /// The shortest delay that velocity control stabilises at any gain, and its change with twice
-    /// as many gains.
-    fn shortest_at(b: f64) -> (f64, f64) {
+    /// The shortest delay that velocity control stabilises at any gain: the shortest one of many
+    /// gains, refined. Infinite where there is none.
+    fn shortest_at(b: f64) -> f64 {
         // Between these gains there is a lower crossing, at which roots go to the left; outside
         // them there is none.
         let (fold, last) = (0.5 * b - b * b * b / 8.0, 0.5 / b);
-        let shortest = |gains: u32| {
-            let share = |i: u32| f64::from(i) / f64::from(gains);
-            let within = (0..=gains).map(|i| fold + (last - fold) * share(i));
-            let beyond = (0..=gains).flat_map(|i| {
-                let gain = 1e-3 * 1e6_f64.powf(share(i));
-                [gain, -gain]
-            });
-            let delays = within.chain(beyond).filter_map(|a_v| {
-                let crossings = Crossings::of(Groups::new(b, a_v, 0.0));
-                crossings.stable_delays().next().map(|s| s.from)
-            });
-            delays.fold(f64::INFINITY, f64::min)
+        let at = |a_v: f64| {
+            let crossings = Crossings::of(Groups::new(b, a_v, 0.0));
+            let first = crossings.stable_delays().next();
+            first.map_or(f64::INFINITY, |stable| stable.from)
         };
-        let (coarse, found) = (shortest(GAINS / 2), shortest(GAINS));
-        (found, (coarse - found).abs())
+        let share = |i: u32| f64::from(i) / f64::from(GAINS);
+        let ranges: [&dyn Fn(f64) -> f64; 3] = [
+            &|share| fold + (last - fold) * share,
+            &|share| 1e-3 * 1e6_f64.powf(share),
+            &|share| -1e-3 * 1e6_f64.powf(share),
+        ];
+        let shortest = ranges.map(|gain| {
+            let within = |share: f64| at(gain(share.clamp(0.0, 1.0)));
+            let tried = (0..=GAINS).map(|i| (share(i), within(share(i))));
+            let best = tried.min_by(|one, other| one.1.total_cmp(&other.1));
+            minimum(within, best.map_or(0.0, |(share, _)| share), share(1))
+        });
+        shortest.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     fn found() -> Self {
@@ -313,10 +319,7 @@ impl ShortDelays {
             }
             strong * tau / b
         };
-        let velocity = SHORT_SLOPES.map(|b| {
-            let (shortest, error) = Self::shortest_at(b);
-            (b, shortest, error)
-        });
+        let velocity = SHORT_SLOPES.map(|b| (b, Self::shortest_at(b)));
         let load = SHORT_SLOPES
             .iter()
             .flat_map(|&b| SHORT.map(|tau| (b, tau, boundary(b, tau))));
@@ -326,19 +329,16 @@ impl ShortDelays {
         }
     }
 
-    /// The smallest of these delays divided by its slope, |μ′|N0/κ, and its error.
-    fn least(&self) -> (f64, f64) {
-        let ratios = self.velocity.iter();
-        let ratios = ratios.map(|(b, tau, error)| (tau / b.abs(), error / b.abs()));
-        ratios.fold((f64::INFINITY, 0.0), |one, other| {
-            if other.0 < one.0 { other } else { one }
-        })
+    /// The smallest of these delays divided by its slope, |μ′|N0/κ.
+    fn least(&self) -> f64 {
+        let ratios = self.velocity.iter().map(|(b, tau)| tau / b.abs());
+        ratios.fold(f64::INFINITY, f64::min)
     }
 
     /// At every slope the shortest stabilised delay exceeds |b|: below it no gain stabilises, and
     /// it does not shrink faster than |b|.
     fn velocity_verdict(&self) -> Verdict {
-        Verdict::of(!self.velocity.is_empty() && self.least().0 > 1.0)
+        Verdict::of(!self.velocity.is_empty() && self.least() > 1.0)
     }
 
     /// The largest distance of the gain from the letter's at a delay.
@@ -361,21 +361,19 @@ impl ShortDelays {
     }
 
     fn claims(&self) -> [Claim; 2] {
-        let (some, none): (Vec<_>, Vec<_>) = self
-            .velocity
-            .iter()
-            .partition(|(_, tau, _)| tau.is_finite());
+        let (some, none): (Vec<_>, Vec<_>) =
+            self.velocity.iter().partition(|(_, tau)| tau.is_finite());
         let mut because = format!(
             "At {} of {} slopes some gain makes sliding stable, at delays of {:.4} |μ′_K|N0/κ or \
              longer.",
             some.len(),
             self.velocity.len(),
-            self.least().0,
+            self.least(),
         );
         if !none.is_empty() {
             let none: Vec<_> = none
                 .iter()
-                .map(|row: &(f64, f64, f64)| row.0.to_string())
+                .map(|row: &(f64, f64)| row.0.to_string())
                 .collect();
             because += &format!(" No gain does at any delay at μ′_K = {}.", none.join(", "));
         }
@@ -384,13 +382,14 @@ impl ShortDelays {
             "pure velocity control … is not able to stabilize unstable continuous sliding states",
         );
         let how = "All stable delays at 60,000 gains of either sign, up to 1,000 √(κ/M), for each \
-            slope; beyond α_v = κ/(2μ′N0) no crossing leads back to stability.";
-        let shortest = self.velocity.iter().map(|(b, tau, error)| {
+            slope, and the shortest one refined; beyond α_v = κ/(2μ′N0) no crossing leads back to stability.";
+        let shortest = self.velocity.iter().map(|(b, tau)| {
             let meaning = "shortest stable delay at any gain, √(M/κ); none: no gain stabilises";
-            Value::of(format!("shortest at {b}"), meaning, *tau).within(*error)
+            Value::of(format!("shortest at {b}"), meaning, *tau).within(SHORTEST_ERROR * tau)
         });
         let least = "shortest stable delay at any gain and slope, |μ′_K|N0/κ";
-        let least = Value::of("shortest", least, self.least().0).within(self.least().1);
+        let least = Value::of("shortest", least, self.least());
+        let least = least.within(SHORTEST_ERROR * self.least());
         let velocity = Claim::new("short_velocity", at, self.velocity_verdict(), because, how)
             .by(std::iter::once(least).chain(shortest))
             .from(&["fig2a"])
@@ -523,15 +522,15 @@ mod tests {
         );
         let told = gains(&[row(-0.1, -0.2, endless), row(-0.2, -0.3, endless)]);
         assert!(!told.contains("positive"), "{told}");
-        let short = |velocity: &[(f64, f64, f64)]| {
+        let short = |velocity: &[(f64, f64)]| {
             let (velocity, load) = (velocity.to_vec(), Vec::new());
             ShortDelays { velocity, load }.claims()[0].because.clone()
         };
-        let told = short(&[(-0.1, 0.5, 0.0), (-1.0, endless, 0.0)]);
+        let told = short(&[(-0.1, 0.5), (-1.0, endless)]);
         assert!(told.contains("At 1 of 2 slopes"), "{told}");
         assert!(told.contains("delays of 5.0000"), "{told}");
         assert!(told.contains("at any delay at μ′_K = -1."), "{told}");
-        assert!(!short(&[(-0.1, 0.5, 0.0)]).contains("No gain"));
+        assert!(!short(&[(-0.1, 0.5)]).contains("No gain"));
     }
 
     #[test]
@@ -566,7 +565,7 @@ mod tests {
             rows.to_vec()
         };
         let of = |shortest: f64, load: Vec<(f64, f64, f64)>| {
-            let velocity = vec![(-0.1, 2.0, 0.0), (-0.2, shortest, 0.0)];
+            let velocity = vec![(-0.1, 2.0), (-0.2, shortest)];
             let found = ShortDelays { velocity, load };
             (found.velocity_verdict(), found.load_verdict())
         };
@@ -582,5 +581,22 @@ mod tests {
         let mut uneven = load(2);
         uneven[1].2 = 1.0 + 1e-6;
         assert_eq!(of(1.5, uneven).1, Verdict::Refined);
+    }
+
+    /// The shortest stable delays from a program of its own, with gains 10¹⁴ times finer than their
+    /// range.
+    #[test]
+    fn shortest_delays_are_those_of_another_program() {
+        for (b, known) in [
+            (-0.005, 0.039_999_333_351),
+            (-0.1, 0.794_720_947_481),
+            (-0.3, 2.267_771_815_994),
+            (-0.7, 4.288_662_853_351),
+        ] {
+            let found = ShortDelays::shortest_at(b);
+            let within = SHORTEST_ERROR * known;
+            assert!((found - known).abs() < within, "{b}: {found}");
+        }
+        assert_eq!(ShortDelays::shortest_at(-1.0), f64::INFINITY);
     }
 }

@@ -1,5 +1,6 @@
 //! Measures of the robustness of the linear stability under a control.
 
+use super::one_variable::{Integral, integral, minimum};
 use crate::linear::Crossings;
 use crate::linear::lobes::LobeControl;
 use crate::linear::margins::{self, Margins, Setting};
@@ -18,8 +19,8 @@ pub(super) struct Measure {
     pub load: f64,
     /// Whether larger values are more robust.
     pub more: bool,
-    /// Its relative error.
-    pub error: f64,
+    /// Its relative error; none of a share of cells.
+    pub error: Option<f64>,
 }
 
 impl Measure {
@@ -32,28 +33,49 @@ impl Measure {
     }
 }
 
-/// Gains over two decades, evenly spaced in the logarithm; delays up to a period of free
+/// Gains of two decades, −0.1 to −10, by the share of the logarithm; delays up to a period of free
 /// oscillation.
-const GAINS: u32 = 2000;
+fn gain_at(share: f64) -> f64 {
+    -0.1 * 100.0_f64.powf(share)
+}
 const DELAYS: (f64, f64) = (0.1, 6.3);
 
-/// At a slope: the stable share of the plane of the logarithms of gain and delay, and the widest
-/// stable interval of delays, as the ratio of its ends.
-fn stable_share(groups: impl Fn(f64) -> Groups) -> (f64, f64) {
+/// Number of gains at which the widest interval is looked for before it is refined.
+const GAINS: u32 = 2000;
+/// The relative error of the widest interval: its maximum is found to the last bits.
+const WIDEST_ERROR: f64 = 1e-9;
+
+/// The parts of the stable intervals inside [`DELAYS`], as ratios of their ends.
+fn stable_ratios(groups: Groups) -> impl Iterator<Item = f64> {
+    let all = Crossings::of(groups).stable_delays();
+    let inside = all.take_while(|one| one.from < DELAYS.1);
+    inside
+        .map(|one| one.to.min(DELAYS.1) / one.from.max(DELAYS.0))
+        .filter(|ratio| *ratio > 1.0)
+}
+
+/// The stable share of the plane of the logarithms of gain and delay.
+fn stable_share(groups: impl Fn(f64) -> Groups) -> Integral {
     let all = (DELAYS.1 / DELAYS.0).ln();
-    let (mut stable, mut widest) = (0.0, 1.0_f64);
-    for i in 0..GAINS {
-        let gain = -0.1 * 100.0_f64.powf((f64::from(i) + 0.5) / f64::from(GAINS));
-        for interval in Crossings::of(groups(gain)).stable_delays() {
-            if interval.from > DELAYS.1 {
-                break;
-            }
-            let (from, to) = (interval.from.max(DELAYS.0), interval.to.min(DELAYS.1));
-            stable += (to / from).ln().max(0.0);
-            widest = widest.max(to / from);
-        }
-    }
-    (stable / all / f64::from(GAINS), widest)
+    let stable = |share: f64| {
+        let ratios = stable_ratios(groups(gain_at(share)));
+        ratios.map(f64::ln).sum::<f64>() / all
+    };
+    integral(stable, (0.0, 1.0), 1.0)
+}
+
+/// The widest stable interval of delays at any gain, as the ratio of its ends; 1 where there is
+/// none.
+fn widest(groups: impl Fn(f64) -> Groups) -> f64 {
+    let step = 1.0 / f64::from(GAINS);
+    let narrowness = |share: f64| {
+        let ratios = stable_ratios(groups(gain_at(share.clamp(0.0, 1.0))));
+        -ratios.fold(1.0, f64::max)
+    };
+    let shares = (0..=GAINS).map(|i| step * f64::from(i));
+    let values = shares.map(|share| (share, narrowness(share)));
+    let best = values.min_by(|one, other| one.1.total_cmp(&other.1));
+    -minimum(narrowness, best.map_or(0.0, |(share, _)| share), step)
 }
 
 /// Measures of linear stability.
@@ -64,26 +86,28 @@ pub(super) fn linear_measures() -> Vec<Measure> {
         velocity: -LobeControl::Velocity.lobe_end(0).b,
         load: f64::INFINITY,
         more: true,
-        error: 1e-12,
+        error: Some(1e-12),
     }];
     for b in [-0.1, -0.3, -0.6] {
-        let velocity = stable_share(|gain| Groups::new(b, gain, 0.0));
-        let load = stable_share(|gain| Groups::new(b, 0.0, gain));
+        let velocity = |gain| Groups::new(b, gain, 0.0);
+        let load = |gain| Groups::new(b, 0.0, gain);
+        let shares = [stable_share(velocity), stable_share(load)];
+        let errors = shares.map(|share| share.error / share.value);
         measures.push(Measure {
             name: format!("stable share at {b}"),
             meaning: "share of gains and delays, in their logarithms, that is stable",
-            velocity: velocity.0,
-            load: load.0,
+            velocity: shares[0].value,
+            load: shares[1].value,
             more: true,
-            error: 2.0 / f64::from(GAINS),
+            error: Some(errors[0].max(errors[1])),
         });
         measures.push(Measure {
             name: format!("stable delays at {b}"),
             meaning: "longest over shortest delay of the widest stable interval",
-            velocity: velocity.1,
-            load: load.1,
+            velocity: widest(velocity),
+            load: widest(load),
             more: true,
-            error: 2.0 / f64::from(GAINS),
+            error: Some(WIDEST_ERROR),
         });
     }
     measures.extend(margins_at_fig3());
@@ -92,6 +116,9 @@ pub(super) fn linear_measures() -> Vec<Measure> {
     }
     measures
 }
+
+/// The relative error of a margin: its equation is solved to the last bits.
+const MARGIN_ERROR: f64 = 1e-9;
 
 /// Margins at the settings of Fig. 3.
 fn margins_at_fig3() -> [Measure; 4] {
@@ -115,17 +142,17 @@ fn margins_at_fig3() -> [Measure; 4] {
         (
             "gain margin",
             "largest over smallest factor of the gain, at Fig. 3",
-            1e-9,
+            MARGIN_ERROR,
         ),
         (
             "phase margin",
             "least phase that makes sliding unstable, rad, at Fig. 3",
-            1e-9,
+            MARGIN_ERROR,
         ),
         (
             "latency margin",
             "largest further latency of the feedback, √(M/κ), at Fig. 3",
-            1e-9,
+            MARGIN_ERROR,
         ),
         (
             "stability radius",
@@ -142,7 +169,7 @@ fn margins_at_fig3() -> [Measure; 4] {
             velocity: of[0][number - 1],
             load: of[1][number - 1],
             more: true,
-            error,
+            error: Some(error),
         }
     })
 }
@@ -150,8 +177,8 @@ fn margins_at_fig3() -> [Measure; 4] {
 /// Number of gains, and number of delays, at which margins are computed.
 const PLACES: u32 = 48;
 
-/// The largest phase margin and the largest latency margin over the box of gains and delays, at a
-/// slope.
+/// The largest phase margin and the largest latency margin on a grid over the box of gains and
+/// delays, at a slope.
 fn largest_margins(b: f64) -> [Measure; 2] {
     let mut searches = Margins::default();
     let mut largest = |groups: fn(f64, f64) -> Groups| {
@@ -160,7 +187,7 @@ fn largest_margins(b: f64) -> [Measure; 2] {
             let share = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES);
             let tau = DELAYS.0 * (DELAYS.1 / DELAYS.0).powf(share(j));
             let setting = Setting {
-                groups: groups(b, -0.1 * 100.0_f64.powf(share(i))),
+                groups: groups(b, gain_at(share(i))),
                 tau,
                 decay: 0.0,
             };
@@ -180,17 +207,11 @@ fn largest_margins(b: f64) -> [Measure; 2] {
         velocity: velocity[number],
         load: load[number],
         more: true,
-        error: 1.0 / f64::from(PLACES),
+        error: Some(MARGIN_ERROR),
     };
-    let latency = "largest latency margin of any gain and delay, √(M/κ)";
-    [
-        measure(
-            "phase",
-            "largest phase margin of any gain and delay, rad",
-            0,
-        ),
-        measure("latency", latency, 1),
-    ]
+    let phase = "largest phase margin on a grid of 48 gains and 48 delays, rad";
+    let latency = "largest latency margin on a grid of 48 gains and 48 delays, √(M/κ)";
+    [measure("phase", phase, 0), measure("latency", latency, 1)]
 }
 
 #[cfg(test)]
@@ -216,5 +237,39 @@ mod tests {
         );
         // At this slope velocity control is never stable.
         assert_eq!(largest_margins(-0.8).map(|m| m.velocity), [0.0; 2]);
+    }
+
+    /// Shares by Simpson's rule with panels halved to 1e-13, and the widest intervals by golden
+    /// section, from a program of its own.
+    #[test]
+    fn shares_and_intervals_are_those_of_another_program() {
+        for (b, shares, intervals) in [
+            (
+                -0.1,
+                [0.299_309_514, 0.506_588_011],
+                [6.161_160_037_468, 17.170_042_526_390],
+            ),
+            (
+                -0.3,
+                [0.058_017_732, 0.311_150_239],
+                [1.985_550_725_320, 10.945_446_114_945],
+            ),
+            (
+                -0.6,
+                [0.001_571_677, 0.193_252_562],
+                [1.087_498_964_892, 7.819_518_979_164],
+            ),
+        ] {
+            let velocity = |gain| Groups::new(b, gain, 0.0);
+            let load = |gain| Groups::new(b, 0.0, gain);
+            let found = [stable_share(velocity), stable_share(load)];
+            for (found, known) in found.into_iter().zip(shares) {
+                let off = (found.value - known).abs();
+                assert!(off < 1e-9 && found.error < 1e-9, "{b}: {found:?}");
+            }
+            for (found, known) in [widest(velocity), widest(load)].into_iter().zip(intervals) {
+                assert!((found - known).abs() < WIDEST_ERROR * known, "{b}: {found}");
+            }
+        }
     }
 }

@@ -15,6 +15,7 @@
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
 //! them: equal numbers give equal verdicts.
 //!
+//! - `one_variable`: integrals and minima of functions of one variable
 //! - `claim`: a claim, the values by which it is judged, its verdict
 //! - `page`: the page; the only file that imports maud
 //! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
@@ -24,6 +25,7 @@ mod claim;
 mod limits;
 mod measures;
 mod motions;
+mod one_variable;
 mod page;
 mod robustness;
 mod roots;
