@@ -239,7 +239,7 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
         2,
         "cannot read missing.toml",
     );
-    expect(&folder.run(&["run", "."]), 2, "it is no file");
+    expect(&folder.run(&["run", "."]), 2, "it is no regular file");
     expect(
         &folder.run(&["plan", "missing.toml"]),
         2,

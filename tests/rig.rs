@@ -217,7 +217,7 @@ fn a_sweep_takes_its_curve_from_a_file() {
     let pipe = folder.path().join("rig/curve.csv");
     let made = std::process::Command::new("mkfifo").arg(pipe).status();
     assert!(made.unwrap().success());
-    refused("it is no file");
+    refused("it is no regular file");
 }
 
 /// A delay that nothing acts on is said once, whatever the command.

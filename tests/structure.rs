@@ -190,6 +190,46 @@ fn libraries_stay_in_their_rooms() {
     }
 }
 
+/// Files that were named from outside are opened by `src/store/regular.rs` alone, which refuses
+/// what is no regular file.
+#[test]
+fn files_are_opened_in_one_place() {
+    // The HDF5 library opens by name, and folders and files of slipmap's own are synced.
+    let own = [
+        "src/store/regular.rs",
+        "src/store/open.rs",
+        "src/store/durable.rs",
+        "src/store/seal.rs",
+        "src/revision.rs",
+        "src/cli/address_space.rs",
+    ];
+    let mut seen = 0;
+    for path in sources(Path::new("src")) {
+        let code = code(&path);
+        let code = code.split("#[cfg(test)]").next().unwrap();
+        let code = code
+            .replace("MapFile::open(", "")
+            .replace("TraceFile::open(", "");
+        let opens = [
+            "File::open(",
+            "File::options(",
+            "OpenOptions",
+            "fs::read(",
+            "fs::read_to_string(",
+            "fs::copy(",
+        ];
+        let used = opens.iter().find(|word| code.contains(**word));
+        let allowed = path.ends_with("tests.rs") || own.iter().any(|own| path == Path::new(own));
+        assert!(
+            used.is_none() || allowed || path.ends_with("test_reader.rs"),
+            "{} uses {used:?}",
+            path.display()
+        );
+        seen += usize::from(used.is_some());
+    }
+    assert!(seen > 4, "the test still sees them: {seen}");
+}
+
 #[test]
 fn every_file_that_the_design_names_exists() {
     let text = std::fs::read_to_string("DESIGN.md").unwrap();

@@ -1,11 +1,9 @@
 //! The kind of a file of slipmap. A command that does not take this kind names the commands that
 //! do.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
-use slipmap::store::{MapFile, trace_reader};
+use slipmap::store::{MapFile, regular, trace_reader};
 use slipmap::sweep::input::case_file::{TextKind, kind_of_text};
 
 /// The first bytes of an HDF5 file.
@@ -24,23 +22,13 @@ pub(super) enum Kind {
 impl Kind {
     /// The kind of the file at `path`; none for files that are not slipmap's.
     pub(super) fn of(path: &Path) -> Option<Self> {
-        // Opening a pipe would block.
-        path.metadata()
-            .is_ok_and(|file| file.is_file())
-            .then_some(())?;
-        let mut bytes = Vec::new();
-        let mut file = File::open(path).ok()?.take(MOST_BYTES);
-        file.by_ref()
-            .take(HDF5.len() as u64)
-            .read_to_end(&mut bytes)
-            .ok()?;
-        if bytes == HDF5 {
+        let bytes = regular::head(path, MOST_BYTES).ok()?;
+        if bytes.starts_with(HDF5) {
             return match trace_reader::is_trace(path) {
                 true => Some(Self::Trace),
                 false => MapFile::open(path).is_ok().then_some(Self::Map),
             };
         }
-        file.read_to_end(&mut bytes).ok()?;
         kind_of_text(std::str::from_utf8(&bytes).ok()?).map(Self::Text)
     }
 

@@ -1,12 +1,11 @@
 //! `slipmap reproduce`: the letter computed again, claim by claim, as a page of HTML and as JSON.
 
 use std::cell::RefCell;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use slipmap::letter::{GENERATOR, LetterError, Reproduction, Verdict, Workshop, reproduce};
 use slipmap::report::progress::Progress;
-use slipmap::store::{Output, StoreError};
+use slipmap::store::{Output, StoreError, regular};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Event, Observer};
 
@@ -201,13 +200,8 @@ fn page(args: &Args) -> Result<Option<&Path>, Failure> {
 
 /// Whether a file is an earlier page.
 fn is_page(path: &Path) -> bool {
-    // Opening a pipe would block.
-    if !path.metadata().is_ok_and(|metadata| metadata.is_file()) {
-        return false;
-    }
-    let mut head = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    read.is_ok() && String::from_utf8_lossy(&head).contains(GENERATOR)
+    let head = regular::head(path, HEAD);
+    head.is_ok_and(|head| String::from_utf8_lossy(&head).contains(GENERATOR))
 }
 
 fn failure(error: LetterError, args: &Args, signals: &Signals) -> Failure {

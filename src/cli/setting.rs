@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use slipmap::store::{Output, StoreError};
+use slipmap::store::{Output, StoreError, regular};
 use slipmap::sweep::Setting;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
 use slipmap::sweep::input::setting_text::setting_text;
@@ -55,8 +55,8 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(());
     }
-    let by_slipmap = path.metadata().is_ok_and(|metadata| metadata.is_file())
-        && std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(HEAD));
+    let head = regular::head(path, HEAD.len() as u64);
+    let by_slipmap = head.is_ok_and(|head| head == HEAD.as_bytes());
     match by_slipmap {
         true => Ok(()),
         false => Err(Failure::bad_input_with_help(

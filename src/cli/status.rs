@@ -1,7 +1,6 @@
 //! `slipmap status`: the progress of a map, from another terminal.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -12,7 +11,7 @@ use slipmap::report::log::{self, Entry, LogLine};
 use slipmap::report::numbers::{grouped, prefixed, seconds};
 use slipmap::store::tiles::Survey;
 use slipmap::store::tiles::survey::ShardSurvey;
-use slipmap::store::{MapFile, StatusCounts};
+use slipmap::store::{MapFile, StatusCounts, regular};
 use utoipa::ToSchema;
 
 use super::failure::Failure;
@@ -166,11 +165,8 @@ fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
         return None;
     }
     let path = log::path(map, found.shard);
-    // Opening anything but a file might block, and a file of another kind may be one long line.
-    if !path.metadata().ok()?.is_file() {
-        return None;
-    }
-    let log = File::open(path).ok()?.take(MOST_OF_LOG);
+    // A file of another kind may be one long line.
+    let log = regular::open(&path).ok()?.take(MOST_OF_LOG);
     let lines = BufReader::new(log).lines().map_while(Result::ok);
     let lines = lines.filter_map(|line| serde_json::from_str::<LogLine>(&line).ok());
     let started = lines.filter_map(|line| match line.entry {

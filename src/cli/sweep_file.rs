@@ -1,11 +1,11 @@
 //! Reads sweep files, case files and tables of friction, with errors that point into them.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
+use slipmap::store::regular::{self, NotRead};
 use slipmap::sweep::input::case_file::{TextKind, is_case_file};
 use slipmap::sweep::input::friction_table::table_of_law;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
@@ -111,7 +111,7 @@ fn read_with_table<T>(
     };
     let beside = |table: &str| {
         let path = folder.map_or_else(|| table.into(), |folder| folder.join(table));
-        as_text(read_file(&path), "table")
+        as_text(regular::read(&path, MOST_BYTES), "table")
     };
     let inlined = match Inlined::new(&text, beside) {
         Ok(inlined) => inlined,
@@ -132,9 +132,9 @@ fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
     let (name, read) = match path == Path::new(STANDARD_INPUT) {
         true => (
             "standard input".to_owned(),
-            at_most(std::io::stdin().lock()),
+            read_standard_input().map_err(NotRead::Refused),
         ),
-        false => (path.display().to_string(), read_file(path)),
+        false => (path.display().to_string(), regular::read(path, MOST_BYTES)),
     };
     match as_text(read, kind) {
         Ok(text) => Ok((name, text)),
@@ -143,25 +143,21 @@ fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
 }
 
 /// The bytes read, as text, or why they are no text.
-fn as_text(read: io::Result<Vec<u8>>, kind: &str) -> Result<String, String> {
-    let read = read.map_err(|error| error.to_string())?;
-    if read.len() as u64 > MOST_BYTES {
-        return Err(format!("a {kind} file has {} at most", bytes(MOST_BYTES)));
-    }
+fn as_text(read: Result<Vec<u8>, NotRead>, kind: &str) -> Result<String, String> {
+    let most = || format!("a {kind} file has {} at most", bytes(MOST_BYTES));
+    let read = match read {
+        Ok(read) if read.len() as u64 > MOST_BYTES => return Err(most()),
+        Ok(read) => read,
+        Err(NotRead::Large(_)) => return Err(most()),
+        Err(other) => return Err(other.to_string()),
+    };
     String::from_utf8(read).map_err(|_| "it is not UTF-8 text".into())
 }
 
-fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    // Opening a pipe would wait for a writer.
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is no file"));
-    }
-    at_most(File::open(path)?)
-}
-
-/// Reads all bytes, up to one more than a file may have.
-fn at_most(from: impl Read) -> io::Result<Vec<u8>> {
+/// Reads standard input, up to one byte more than a file may have.
+fn read_standard_input() -> io::Result<Vec<u8>> {
     let mut read = Vec::new();
-    from.take(MOST_BYTES + 1).read_to_end(&mut read)?;
+    let input = std::io::stdin().lock();
+    input.take(MOST_BYTES + 1).read_to_end(&mut read)?;
     Ok(read)
 }

@@ -16,7 +16,7 @@ use crate::store::map_file::Plane;
 use crate::store::schema::root;
 use crate::store::tiles::shards;
 use crate::store::trace_reader::case_of;
-use crate::store::{MapFile, Output, trace_file};
+use crate::store::{MapFile, Output, regular, trace_file};
 use crate::sweep::cells::samples::Most;
 use crate::sweep::cells::trace::MOST_SAMPLES;
 use crate::sweep::events::Attended;
@@ -206,7 +206,8 @@ impl<'a> Workshop<'a> {
     fn place(&self, source: &Source) -> Result<(PathBuf, bool), LetterError> {
         let path = self.folder.join(format!("{}.toml", source.name));
         let text = source.text(self.quick);
-        let same = std::fs::read_to_string(&path).is_ok_and(|there| there == text);
+        let there_now = regular::read(&path, text.len() as u64);
+        let same = there_now.is_ok_and(|bytes| bytes == text.as_bytes());
         let [data, picture] = ["h5", "svg"].map(|extension| path.with_extension(extension));
         let foreign = match there(&data) {
             // What is written first is there first.
@@ -295,9 +296,9 @@ fn is_of(path: &Path, name: &'static str, text: &str) -> Result<bool, LetterErro
 
 /// Whether a file holds just these bytes; none where there is none.
 fn holds(path: &Path, bytes: &[u8]) -> Option<bool> {
-    let found = path.symlink_metadata().ok()?;
-    let as_long = found.is_file() && found.len() == bytes.len() as u64;
-    Some(as_long && std::fs::read(path).is_ok_and(|found| found == bytes))
+    let itself = path.symlink_metadata().ok()?.is_file();
+    let read = || regular::read(path, bytes.len() as u64);
+    Some(itself && read().is_ok_and(|found| found == bytes))
 }
 
 /// The values of the axes before a plane.

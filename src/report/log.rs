@@ -1,7 +1,7 @@
 //! The log of a run: one JSON object per line, in a file beside the map.
 
 use std::cell::{Cell, RefCell};
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::numbers::representable;
 use super::progress::Progress;
+use crate::store::regular;
 use crate::sweep::{Event, Observer, Shard};
 
 /// Time between two lines of progress.
@@ -104,17 +105,9 @@ impl Log {
     #[must_use]
     pub fn beside(map: &Path, shard: Shard) -> Self {
         let path = path(map, shard);
-        // A link or a folder with this name is left alone.
-        let regular = path.symlink_metadata().map_or(true, |m| m.is_file());
-        let open = || {
-            OpenOptions::new()
-                .create(true)
-                .append(true)
-                .open(&path)
-                .ok()
-        };
         Self {
-            file: RefCell::new(regular.then(open).flatten()),
+            // A link or a folder with this name is left alone.
+            file: RefCell::new(regular::append(&path).ok()),
             shard,
             start: Cell::new(Instant::now()),
             last_line: Cell::new(Instant::now()),

@@ -29,29 +29,6 @@ pub(super) fn write_synced(
     })
 }
 
-/// Reads all bytes of a regular file. A pipe or a device is not opened: reading it might never end.
-pub(super) fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
-    let found = fs::metadata(path).map_err(NotRead::Refused)?;
-    if !found.is_file() {
-        return Err(NotRead::Foreign);
-    }
-    if found.len() > most {
-        return Err(NotRead::Large(found.len()));
-    }
-    fs::read(path).map_err(NotRead::Refused)
-}
-
-/// Why a file was not read.
-#[derive(Debug)]
-pub(super) enum NotRead {
-    /// The system refused.
-    Refused(std::io::Error),
-    /// It is no regular file.
-    Foreign,
-    /// It has this many bytes, too many to read.
-    Large(u64),
-}
-
 /// Makes a file or a folder durable.
 pub(super) fn sync(path: &Path) -> Result<(), StoreError> {
     let synced = File::open(path).and_then(|file| file.sync_all());

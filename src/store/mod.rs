@@ -30,6 +30,7 @@
 //! - `open`: the only way to open HDF5 files and their objects; it refuses links to other files,
 //!   filter plugins and foreign storage
 //! - `sample`: which cells are checked by a second method: some of every outcome by every method
+//! - [`regular`]: opens regular files, and no others, for all of slipmap
 //! - `seal`: a checksum of all bytes of a map, appended to the file
 //! - `soundness`: whether a map's file is as it was written: schema, checksums
 //! - `source`: where the pieces of a map come from; pieces in memory
@@ -62,6 +63,7 @@ pub mod map_writer;
 mod netcdf;
 mod open;
 pub mod output;
+pub mod regular;
 pub(crate) mod sample;
 pub mod schema;
 mod seal;

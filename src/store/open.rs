@@ -2,7 +2,6 @@
 //! no code, and takes no more memory than slipmap's own files do.
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
-use std::io::Read;
 use std::mem::MaybeUninit;
 use std::path::Path;
 use std::ptr::null_mut;
@@ -21,11 +20,14 @@ use hdf5_sys::h5z::{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE};
 
 use super::error::StoreError;
 use super::lock;
+use super::regular;
 
 /// The most bytes of a chunk: four times what slipmap writes. Larger chunks are refused.
 const MOST_OF_CHUNK: usize = 8 << 20;
 /// The most members of a group: several times what any map holds. Larger groups are refused.
 const MOST_NAMES: usize = 1000;
+/// The first bytes of a file of HDF5.
+const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// HDF5's number of the shuffle filter.
 pub(super) const SHUFFLE: c_int = H5Z_FILTER_SHUFFLE;
 /// HDF5's number of the deflate filter.
@@ -60,9 +62,8 @@ fn no_plugin_is_found() -> bool {
 
 /// Whether the file begins with the signature of HDF5.
 fn begins_as_hdf5(path: &Path) -> bool {
-    let mut signature = [0; 8];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut signature));
-    read.is_ok() && signature == *b"\x89HDF\r\n\x1a\n"
+    let read = regular::head(path, SIGNATURE.len() as u64);
+    read.is_ok_and(|head| head == SIGNATURE)
 }
 
 /// Opens the file at `path`. `refuse` makes the error for a file of the wrong kind, with the
@@ -82,17 +83,22 @@ pub(super) fn to_read(
         let why = "its name is not UTF-8, and HDF5 does not open it";
         return Err(refuse(path, why.into()));
     }
-    std::fs::File::open(path).map_err(StoreError::io("open", path))?;
+    regular::open(path).map_err(|not| StoreError::io("open", path)(not.into()))?;
     if !*CONFINED {
         let why = "the HDF5 library here cannot be kept from opening other files";
         return Err(refuse(path, why.into()));
     }
+    // The library is given no file of another kind: reading some files of the system never ends.
+    let opened = || match begins_as_hdf5(path) {
+        true => File::open(path),
+        false => Err("it is no HDF5 file".into()),
+    };
     // The library locks the files that it writes. The lock may have been released a moment ago.
     let once_more = |refused| match lock::is_held(path) {
         true => Err(refused),
-        false => File::open(path),
+        false => opened(),
     };
-    let file = File::open(path).or_else(once_more).map_err(|_| {
+    let file = opened().or_else(once_more).map_err(|_| {
         if lock::is_held(path) {
             return StoreError::InUse {
                 path: path.to_owned(),

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use sha2::{Digest, Sha256};
 
+use super::regular;
 use crate::sweep::plan::in_hexadecimal;
 
 /// The text before the digest.
@@ -63,7 +64,7 @@ fn last(file: &mut File) -> io::Result<(u64, [u8; LENGTH])> {
 /// # Errors
 /// When it cannot be read.
 pub(super) fn check(path: &Path, stop: &AtomicBool) -> io::Result<Seal> {
-    let mut file = File::open(path)?;
+    let mut file = regular::open(path)?;
     if file.metadata()?.len() < LENGTH as u64 {
         return Ok(Seal::Missing);
     }

@@ -9,7 +9,7 @@ use super::pdf;
 use super::render;
 use super::scene::Scene;
 use crate::report::visible::visible_line;
-use crate::store::{Output, StoreError};
+use crate::store::{Output, StoreError, regular};
 
 /// The most cells per axis: more would not show in a bitmap, and would make files of shapes too
 /// large.
@@ -130,11 +130,7 @@ struct Texts {
 
 /// The texts of a picture by slipmap; none where there is none at `path`.
 fn texts(path: &Path) -> Option<Texts> {
-    // Opening a pipe would block.
-    if !path.metadata().is_ok_and(|m| m.is_file()) {
-        return None;
-    }
-    let file = BufReader::new(fs::File::open(path).ok()?);
+    let file = BufReader::new(regular::open(path).ok()?);
     let reader = png::Decoder::new(file).read_info().ok()?;
     let texts = &reader.info().utf8_text;
     let text = |keyword: &str| {

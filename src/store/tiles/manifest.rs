@@ -9,8 +9,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::super::describe::Provenance;
-use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
+use super::super::regular::{self, NotRead};
 use super::super::schema;
 use super::record::{Digest, digest};
 use crate::sweep::plan::{Plan, in_hexadecimal};
@@ -135,7 +135,7 @@ impl Manifest {
             path: path.to_owned(),
             why,
         };
-        let bytes = read_regular(path, MOST_BYTES).map_err(|why| match why {
+        let bytes = regular::read(path, MOST_BYTES).map_err(|why| match why {
             NotRead::Refused(error) => StoreError::io("read", path)(error),
             NotRead::Foreign => StoreError::Foreign {
                 path: path.to_owned(),

@@ -6,8 +6,8 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
+use super::super::regular::{self, NotRead};
 use super::super::source::Source;
 use super::folder::{is_tile_file, listed};
 use super::format::{self, Damage, Entry};
@@ -56,7 +56,7 @@ impl Checked {
                 fault: Some(fault),
             }))
         };
-        let bytes = match read_regular(path, MOST_BYTES) {
+        let bytes = match regular::read(path, MOST_BYTES) {
             Ok(bytes) => bytes,
             Err(NotRead::Large(length)) => return useless(format!("it has {length} bytes")),
             Err(NotRead::Foreign) => {
@@ -89,11 +89,12 @@ impl Checked {
 
 /// The entries in the head of a tile file; empty where the head is not sound.
 fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
-    let found = path.metadata()?;
-    if !found.is_file() {
-        return Ok(Vec::new());
-    }
-    let mut file = File::open(path)?;
+    let mut file = match regular::open(path) {
+        Ok(file) => file,
+        Err(NotRead::Foreign) => return Ok(Vec::new()),
+        Err(other) => return Err(other.into()),
+    };
+    let found = file.metadata()?;
     let mut head = vec![0; format::HEAD.min(found.len() as usize)];
     file.read_exact(&mut head)?;
     let length = format::length_of_head(&head).filter(|&length| length as u64 <= found.len());
@@ -110,7 +111,7 @@ fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
 
 /// Whether a tile file has this `layout`; none where its head is unreadable.
 pub(super) fn is_of(path: &Path, layout: &Digest) -> Result<Option<bool>, StoreError> {
-    match read_regular(path, MOST_BYTES) {
+    match regular::read(path, MOST_BYTES) {
         Ok(bytes) => Ok(match format::index(&bytes, layout) {
             Ok(_) => Some(true),
             Err(Damage::OtherLayout) => Some(false),
@@ -258,7 +259,8 @@ impl TileReader {
         let open = match &mut self.open {
             Some((number, open)) if *number == file => open,
             other => {
-                let opened = File::open(path).map_err(StoreError::io("open", path))?;
+                let opened = regular::open(path).map_err(Into::into);
+                let opened = opened.map_err(StoreError::io("open", path))?;
                 &mut other.insert((file, opened)).1
             }
         };

@@ -7,8 +7,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use super::super::durable::{NotRead, read_regular, sync_name, write_synced};
+use super::super::durable::{sync_name, write_synced};
 use super::super::error::StoreError;
+use super::super::regular::{self, NotRead};
 use super::super::source::Source;
 use super::folder::{self, Belongs, TileFolder};
 use super::manifest::{self, Manifest};
@@ -66,7 +67,7 @@ pub fn settle(
     is_complete: impl FnOnce(&str) -> Result<bool, StoreError>,
 ) -> Result<bool, StoreError> {
     let path = marker(map);
-    let hash = match read_regular(&path, MOST_OF_MARK) {
+    let hash = match regular::read(&path, MOST_OF_MARK) {
         Ok(hash) => hash,
         Err(NotRead::Refused(error)) if [NotFound, NotADirectory].contains(&error.kind()) => {
             return Ok(false);

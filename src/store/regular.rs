@@ -1,0 +1,172 @@
+//! The only way to open files that were named from outside. What is no regular file is refused
+//! before it is opened and once more afterwards: opening a pipe, or reading a device, might never
+//! end. No more is read than the caller takes.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Why a file was not read.
+#[derive(Debug, thiserror::Error)]
+pub enum NotRead {
+    /// The system refused.
+    #[error("{0}")]
+    Refused(io::Error),
+    /// It is no regular file.
+    #[error("it is no regular file")]
+    Foreign,
+    /// It has at least this many bytes, too many to read.
+    #[error("it has {0} bytes or more")]
+    Large(u64),
+}
+
+impl From<io::Error> for NotRead {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            // Only what stands for something else has nothing to read yet.
+            ErrorKind::WouldBlock => Self::Foreign,
+            _ => Self::Refused(error),
+        }
+    }
+}
+
+impl From<NotRead> for io::Error {
+    fn from(not: NotRead) -> Self {
+        match not {
+            NotRead::Refused(error) => error,
+            other => Self::other(other.to_string()),
+        }
+    }
+}
+
+/// Opens a regular file to read it.
+///
+/// # Errors
+/// Where there is none, or it is no regular file.
+pub fn open(path: &Path) -> Result<File, NotRead> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(NotRead::Foreign);
+    }
+    opened(OpenOptions::new().read(true), path, 0)
+}
+
+/// Reads all bytes of a regular file with at most `most` bytes.
+///
+/// # Errors
+/// Where there is none, it is no regular file, or has more bytes.
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+    let file = open(path)?;
+    // Some files of the system have more bytes than they say.
+    let length = file.metadata()?.len();
+    if length > most {
+        return Err(NotRead::Large(length));
+    }
+    let mut bytes = Vec::with_capacity(length as usize);
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 {
+        length if length > most => Err(NotRead::Large(length)),
+        _ => Ok(bytes),
+    }
+}
+
+/// The first bytes of a regular file, `most` or as many as it has.
+///
+/// # Errors
+/// As [`open`].
+pub fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+    let mut bytes = Vec::new();
+    open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Opens a regular file to append to it. It is created where it is missing; a link is refused.
+///
+/// # Errors
+/// Where something else has this name, or the system refuses.
+pub fn append(path: &Path) -> Result<File, NotRead> {
+    own(OpenOptions::new().create(true).append(true), path)
+}
+
+/// Opens a regular file to lock it. It is created where it is missing; a link is refused.
+pub(super) fn lock_file(path: &Path) -> Result<File, NotRead> {
+    let mut options = OpenOptions::new();
+    own(options.create(true).truncate(false).write(true), path)
+}
+
+/// Opens a file that slipmap writes beside others.
+fn own(options: &mut OpenOptions, path: &Path) -> Result<File, NotRead> {
+    if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
+        return Err(NotRead::Foreign);
+    }
+    #[cfg(unix)]
+    let no_link = libc::O_NOFOLLOW;
+    #[cfg(not(unix))]
+    let no_link = 0;
+    opened(options, path, no_link)
+}
+
+/// Opens a file without waiting for anybody, and checks what was opened.
+fn opened(options: &mut OpenOptions, path: &Path, flags: i32) -> Result<File, NotRead> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(libc::O_NONBLOCK | flags);
+    }
+    #[cfg(not(unix))]
+    let _ = flags;
+    let file = options.open(path)?;
+    match file.metadata()?.is_file() {
+        true => Ok(file),
+        false => Err(NotRead::Foreign),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    #[test]
+    fn only_regular_files_are_opened_and_no_more_is_read_than_is_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("file"), "0123456789").unwrap();
+        assert!(
+            Command::new("mkfifo")
+                .arg(path("pipe"))
+                .status()
+                .unwrap()
+                .success()
+        );
+        for (name, to) in [("zero", "/dev/zero"), ("link", "file"), ("to pipe", "pipe")] {
+            std::os::unix::fs::symlink(to, path(name)).unwrap();
+        }
+        for name in ["pipe", "zero", "to pipe", "."] {
+            assert!(matches!(open(&path(name)), Err(NotRead::Foreign)), "{name}");
+            assert!(
+                matches!(append(&path(name)), Err(NotRead::Foreign)),
+                "{name}"
+            );
+            assert!(
+                matches!(lock_file(&path(name)), Err(NotRead::Foreign)),
+                "{name}"
+            );
+        }
+        assert!(matches!(append(&path("link")), Err(NotRead::Foreign)));
+        assert_eq!(read(&path("link"), 10).unwrap(), b"0123456789");
+        assert!(matches!(read(&path("file"), 9), Err(NotRead::Large(10))));
+        assert_eq!(head(&path("file"), 3).unwrap(), b"012");
+        assert!(matches!(read(&path("none"), 9), Err(NotRead::Refused(_))));
+        assert!(lock_file(&path("new")).is_ok() && append(&path("new")).is_ok());
+    }
+
+    /// Files of the system say that they have no bytes.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn files_that_say_nothing_of_their_length_are_bounded_too() {
+        let maps = Path::new("/proc/self/maps");
+        assert_eq!(maps.metadata().unwrap().len(), 0);
+        assert!(matches!(read(maps, 100), Err(NotRead::Large(101))));
+        assert!(read(maps, 1 << 24).unwrap().len() > 100);
+    }
+}
