@@ -5,10 +5,11 @@ use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_numbers, put_text};
-use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
+use super::curve_rows::{BoundaryColumn, CORNER, CurveRows, EachColumn, Named, Per};
 use super::curve_words::{DIRECTION, STABLE_SIDE, direction_along, stable_sides};
+use super::group_names::names_of_axes;
 use super::netcdf::{DimensionId, Dimensions, named};
-use super::schema::{BOUNDARIES, PLANE};
+use super::schema::{BOUNDARIES, PARAMETER, PLANE};
 use crate::sweep::Plan;
 use crate::sweep::input::quantity::Quantity;
 
@@ -36,16 +37,20 @@ pub(super) struct BoundaryWriter {
     outer_of_corners: Vec<OuterColumn>,
 }
 
+/// A parameter and its name in the group.
+#[derive(Clone)]
+struct Held(Quantity, String);
+
 /// Makes datasets in the group.
 struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
     /// The first parameter of the planes.
-    parameter: Quantity,
+    parameter: Held,
     /// The second one.
-    second: Quantity,
+    second: Held,
     /// The parameters of the axes outside the planes.
-    outer: Vec<Quantity>,
+    outer: Vec<Held>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
 }
@@ -77,7 +82,7 @@ impl Maker<'_> {
         let units = &self.plan.spec.units;
         let dataset = match about.named {
             Named::Number(name @ DIRECTION, _) => {
-                let meaning = direction_along(&self.second);
+                let meaning = direction_along(&self.second.0);
                 self.make::<T>(about.per, name, (&meaning, "1"))
             }
             Named::Number(name, meaning) => self.make::<T>(about.per, name, (meaning, "1")),
@@ -94,7 +99,7 @@ impl Maker<'_> {
             put_text(&dataset, "sample_dimension", counted)?;
         }
         if let Some((values, meanings)) = about.flags {
-            let sides = stable_sides([&self.parameter, &self.second]);
+            let sides = stable_sides([&self.parameter.0, &self.second.0]);
             let of_side = matches!(about.named, Named::Number(STABLE_SIDE, _));
             put_flags(&dataset, values, if of_side { &sides } else { meanings })?;
         }
@@ -105,11 +110,15 @@ impl Maker<'_> {
         &mut self,
         per: Per,
         prefix: &str,
-        parameter: &Quantity,
+        Held(parameter, name): &Held,
     ) -> hdf5::Result<Dataset> {
-        let name = format!("{prefix}{}", parameter.name());
         let unit = parameter.unit(&self.plan.spec.units);
-        self.make::<f64>(per, &name, (parameter.long_name(), &unit))
+        let about = (parameter.long_name(), &*unit);
+        let dataset = self.make::<f64>(per, &format!("{prefix}{name}"), about)?;
+        if name != parameter.name() {
+            put_text(&dataset, PARAMETER, parameter.name())?;
+        }
+        Ok(dataset)
     }
 
     /// A column for each axis outside the planes.
@@ -186,24 +195,26 @@ impl BoundaryWriter {
             "exact crossing curves: where characteristic roots lie on the imaginary axis; and \
             boundaries of degrees of stability",
         )?;
+        let [curve, vertex, corner] = Per::ALL.map(Per::name);
         let ids = [
-            dimensions.add_bare(&group, "curve")?,
-            dimensions.add_bare(&group, "vertex")?,
-            dimensions.add_bare(&group, "corner")?,
+            dimensions.add_bare(&group, curve)?,
+            dimensions.add_bare(&group, vertex)?,
+            dimensions.add_bare(&group, corner)?,
         ];
-        let parameter = plan.spec.axes[p].parameter.clone();
-        let second = plan.spec.axes[q].parameter.clone();
-        let plane = format!("{} {}", parameter.name(), second.name());
+        let mut axes: Vec<Held> = held(plan);
+        let (parameter, second) = (axes[p].clone(), axes[q].clone());
+        let plane = format!("{} {}", parameter.0.name(), second.0.name());
         put_text(&group, PLANE, &plane)?;
-        let axes = plan.spec.axes.iter().enumerate();
-        let outer = axes.filter(|&(axis, _)| axis != p && axis != q);
+        let (latest, first) = (p.max(q), p.min(q));
+        axes.remove(latest);
+        axes.remove(first);
         let mut making = Making {
             maker: Maker {
                 group: &group,
                 plan,
                 parameter,
                 second,
-                outer: outer.map(|(_, axis)| axis.parameter.clone()).collect(),
+                outer: axes,
                 dimensions,
                 ids,
             },
@@ -215,7 +226,7 @@ impl BoundaryWriter {
         Ok(Self {
             ids,
             lengths: [0; 3],
-            outer_of_corners: making.maker.outer(Per::Corner, "corner_")?,
+            outer_of_corners: making.maker.outer(Per::Corner, CORNER)?,
             datasets: making.datasets,
             waiting,
             outer_of_curves: making.outer_of_curves.unwrap_or_default(),
@@ -260,6 +271,16 @@ impl BoundaryWriter {
         }
         Ok(())
     }
+}
+
+/// The parameters of all axes, with their names in the group.
+fn held(plan: &Plan) -> Vec<Held> {
+    let axes = plan.spec.axes.iter().map(|axis| &axis.parameter);
+    let names: Vec<&str> = axes.clone().map(Quantity::name).collect();
+    let names = names_of_axes(&names).into_iter();
+    axes.zip(names)
+        .map(|(parameter, name)| Held(parameter.clone(), name))
+        .collect()
 }
 
 fn repeat_each(columns: &mut [OuterColumn], values: &[f64], times: usize) {

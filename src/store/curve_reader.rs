@@ -6,6 +6,7 @@ use hdf5::{Dataset, Group, H5Type, SliceOrIndex};
 
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, FillColumn, Named, Per};
 use super::error::StoreError;
+use super::group_names::names_of_axes;
 use super::map_file::MapFile;
 use super::open;
 use super::schema::BOUNDARIES;
@@ -73,6 +74,17 @@ impl MapFile {
         } else {
             Err(damaged())
         }
+    }
+
+    /// The names of the axes beside those of curves: in the group of curves, and in tables of them.
+    #[must_use]
+    pub fn names_in_curves(&self) -> Vec<String> {
+        let axes: Vec<&str> = self
+            .axes()
+            .iter()
+            .map(|axis| axis.parameter.name())
+            .collect();
+        names_of_axes(&axes)
     }
 
     /// The curves in the planes at the values `wanted` of the axes outside them, in order.
@@ -191,7 +203,8 @@ impl EachColumn for Fitting<'_> {
 
 impl CurveColumns {
     fn of(map: &MapFile, (p, q): (usize, usize)) -> hdf5::Result<Self> {
-        let name = |axis: usize| map.axes()[axis].parameter.name();
+        let names = map.names_in_curves();
+        let name = |axis: usize| names[axis].as_str();
         let mut opening = Opening {
             group: map.group(BOUNDARIES)?,
             parameter: name(p),

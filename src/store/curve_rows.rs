@@ -10,6 +10,9 @@ use crate::linear::curves::{Corner, CurvePiece};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
 
+/// Stands before the name of a parameter where its values are those of corners.
+pub(super) const CORNER: &str = "corner_";
+
 /// What each number of a column belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Per {
@@ -19,6 +22,20 @@ pub(super) enum Per {
     Vertex,
     /// A point where two curves cross.
     Corner,
+}
+
+impl Per {
+    /// All of them.
+    pub(super) const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
+
+    /// The name of the dimension.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Curve => "curve",
+            Self::Vertex => "vertex",
+            Self::Corner => "corner",
+        }
+    }
 }
 
 /// What a column is called, and the unit of its numbers.
@@ -132,7 +149,7 @@ boundary_columns! {
     CurveRows {
         /// Per curve: number of vertices.
         vertex_count: i32 = BoundaryColumn {
-            counts: Some("vertex"),
+            counts: Some(Per::Vertex.name()),
             ..column(Per::Curve, Named::Number("vertex_count", "number of vertices of the curve"))
         };
         /// Per curve: k.
@@ -191,9 +208,9 @@ boundary_columns! {
         /// Per vertex: the frequency.
         omega: f64 = column(Per::Vertex, Named::Frequency("omega", "crossing frequency"));
         /// Per corner: the parameter.
-        corner_p: f64 = column(Per::Corner, Named::Parameter("corner_"));
+        corner_p: f64 = column(Per::Corner, Named::Parameter(CORNER));
         /// Per corner: the delay, or another second parameter.
-        corner_q: f64 = column(Per::Corner, Named::Second("corner_"));
+        corner_q: f64 = column(Per::Corner, Named::Second(CORNER));
         /// Per corner: the larger frequency.
         corner_omega_upper: f64 = column(
             Per::Corner,
@@ -246,11 +263,6 @@ struct Describing(Vec<DescribedColumn>);
 
 impl EachColumn for Describing {
     fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
-        let per = match about.per {
-            Per::Curve => "curve",
-            Per::Vertex => "vertex",
-            Per::Corner => "corner",
-        };
         let (name, mut meaning) = match about.named {
             Named::Number(name, meaning)
             | Named::Frequency(name, meaning)
@@ -268,7 +280,7 @@ impl EachColumn for Describing {
                 .collect();
             meaning = format!("{meaning}: {}", words.join(", "));
         }
-        self.0.push((per, name, meaning));
+        self.0.push((about.per.name(), name, meaning));
         Ok(())
     }
 }

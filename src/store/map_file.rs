@@ -17,6 +17,7 @@ use super::values::{Chunks, Number, read, whole};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
 use crate::sweep::input::field::Storage;
+use crate::sweep::input::map_names::MOST_AXES;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::system::SystemModel;
 use crate::sweep::input::units::Units;
@@ -490,7 +491,7 @@ fn read_axes(
     }
     let lengths = axes.iter().map(|axis| axis.values.len() as u64);
     let cells = lengths.fold(1, u64::saturating_mul);
-    if axes.is_empty() || cells > MOST_CELLS {
+    if axes.is_empty() || axes.len() > MOST_AXES || cells > MOST_CELLS {
         let why = format!("it has {} axes and {cells} cells", axes.len());
         return Err(StoreError::not_a_map(path, why));
     }

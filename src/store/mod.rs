@@ -24,13 +24,14 @@
 //! - `describe`: what a file says of itself: who made it, the sweep, the friction law, parameters
 //! - `durable`: files written whole, synced and renamed
 //! - `error`: why a map or trace could not be written or read, with the file's name and the cause
+//! - `group_names`: names of parameters in the group of curves
 //! - `lock`: locks that end with the process that holds them
 //! - `map_summary`: ranges and counts, from a map's attributes or from all its cells
 //! - `netcdf`: dimension scales as netCDF-4 readers expect them
 //! - `open`: the only way to open HDF5 files and their objects; it refuses links to other files,
 //!   filter plugins and foreign storage
-//! - `sample`: which cells are checked by a second method: some of every outcome by every method
 //! - [`regular`]: opens regular files, and no others, for all of slipmap
+//! - `sample`: which cells are checked by a second method: some of every outcome by every method
 //! - `seal`: a checksum of all bytes of a map, appended to the file
 //! - `soundness`: whether a map's file is as it was written: schema, checksums
 //! - `source`: where the pieces of a map come from; pieces in memory
@@ -56,6 +57,7 @@ pub mod curve_words;
 pub mod describe;
 mod durable;
 mod error;
+pub mod group_names;
 mod lock;
 pub mod map_file;
 mod map_summary;

@@ -112,13 +112,7 @@ pub mod summary {
     pub const UNFLAGGED: &str = "cells_unflagged";
 }
 
-/// Name of the status of each cell.
-pub const STATUS: &str = "status";
-/// Name of the group of crossing curves.
-pub const BOUNDARIES: &str = "boundaries";
-
-/// Name of the group of best settings.
-pub const BEST: &str = "best";
+pub use crate::sweep::input::map_names::{BEST, BOUNDARIES, STATUS};
 
 /// Variables of the group of best settings, besides the gain and the delay.
 pub mod best {
@@ -134,10 +128,23 @@ pub mod best {
     pub const CERTIFIED: &str = "certified";
     /// Number of stable regions of the plane.
     pub const REGIONS: &str = "regions";
+    /// All of them.
+    pub const ALL: [&str; 6] = [
+        ABSCISSA,
+        FREQUENCY,
+        RELAXATION_TIME,
+        CERTIFIED,
+        REGIONS,
+        KIND,
+    ];
 }
 
 /// Value of the flags and counts in the group of best settings where nothing was found.
 pub const BEST_FLAG_FILL: i8 = -1;
+
+/// Attribute of a parameter's variable in the group of curves, where the variable cannot have the
+/// parameter's name: that name.
+pub const PARAMETER: &str = "parameter";
 
 /// Attribute of both groups: the two axes that span the planes, the first parameter and the delay.
 pub const PLANE: &str = "plane";

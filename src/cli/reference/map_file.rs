@@ -2,6 +2,7 @@
 
 use slipmap::linear::best::Kind;
 use slipmap::store::curve_rows::CurveRows;
+use slipmap::store::group_names;
 use slipmap::store::schema::{self, root, summary};
 use slipmap::store::trace_file::{QUANTITIES, TIME};
 use slipmap::sweep::cells::trace::{EVENTS, MODES};
@@ -115,12 +116,17 @@ pub(super) fn map_file(page: &mut String) {
     heading(page, 2, &format!("The group `{}`", schema::BOUNDARIES));
     paragraph(
         page,
-        "Exact curves in every plane of two parameters (PARAMETER and SECOND below, which is \
-         `tau` in planes with the delay), as contiguous ragged arrays of CF: curve after curve, \
-         vertex after vertex. The axes outside of the plane stand in it once for every curve, and \
-         with `corner_` before the name once for every corner. In planes without `tau` the words \
-         of `stable_side` name both parameters: smaller_PARAMETER, smaller_SECOND, neither, \
-         larger_SECOND, larger_PARAMETER.",
+        &format!(
+            "Exact curves in every plane of two parameters (PARAMETER and SECOND below, which is \
+             `tau` in planes with the delay), as contiguous ragged arrays of CF: curve after \
+             curve, vertex after vertex. The axes outside of the plane stand in it once for every \
+             curve, and with `corner_` before the name once for every corner. Where a system has \
+             a parameter of the name of another column, such as `omega`, `{}` stands before the \
+             parameter's name in this group and in tables of curves; the attribute `{}` then has \
+             the name itself.",
+            group_names::PREFIX,
+            schema::PARAMETER
+        ),
     );
     let rows = CurveRows::described().unwrap_or_default().into_iter();
     let rows = rows.map(|(per, name, meaning)| [code(&name), per.to_owned(), meaning]);
@@ -132,15 +138,7 @@ pub(super) fn map_file(page: &mut String) {
         &format!(
             "With `best = true`: the setting of fastest decay of every plane, over the axes \
              outside of it. The gain and `tau`, and `{}` (one of: {}).",
-            [
-                schema::best::ABSCISSA,
-                schema::best::FREQUENCY,
-                schema::best::RELAXATION_TIME,
-                schema::best::CERTIFIED,
-                schema::best::REGIONS,
-                schema::best::KIND,
-            ]
-            .join("`, `"),
+            schema::best::ALL.join("`, `"),
             kinds.join(", "),
         ),
     );

@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::cells::{about, of_axis};
 use super::{Column, Table, TableError};
 use crate::linear::Direction;
+use crate::store::MapFile;
 use crate::store::curve_words::{CURVE_KINDS, DIRECTIONS, direction_along, stable_sides};
 use crate::store::map_file::MapCurve;
 use crate::store::schema::DEGREE_OF_STABILITY;
-use crate::store::{MapAxis, MapFile};
 
 /// Writes the curves of a map, one row per vertex: the number of the curve, the axes outside its
 /// plane, its degree of stability, branch, direction, stable side and kind, then the vertex. Axes
@@ -34,7 +34,7 @@ pub fn write_curves(
         .filter(|&axis| axis != p && axis != tau)
         .collect();
     let about = comments.then(|| about(map));
-    let columns = columns(map, &outer, [&axes[p], &axes[tau]]);
+    let columns = columns(map, &outer, [p, tau]);
     let mut table = Table::begin(out, about.as_ref(), &columns)?;
     let wanted: Vec<Option<f64>> = outer
         .iter()
@@ -63,11 +63,11 @@ pub fn write_curves(
     table.finish().map(Some)
 }
 
-fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> {
+fn columns(map: &MapFile, outer: &[usize], plane: [usize; 2]) -> Vec<Column> {
     let degree = "degree of stability: roots on the curve have this real part, negated";
     let omega = map.units().angular_frequency();
     let omega = Column::of("omega", omega, "crossing frequency");
-    let direction = direction_along(&plane[1].parameter);
+    let direction = direction_along(&map.axes()[plane[1]].parameter);
     let of_curve = [
         Column::of(DEGREE_OF_STABILITY, map.degree_unit(), degree),
         Column::of("branch", "", "branch number k of the crossing delay"),
@@ -80,14 +80,21 @@ fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> 
         Column::of("kind", "", "what lies on the line along the curve"),
     ];
     let number = Column::of("curve", "", "number of the curve, in the order of the map");
-    let outer = outer.iter().map(|&axis| of_axis(&map.axes()[axis]));
-    let vertex = plane.map(of_axis).into_iter().chain([omega]);
+    let names = map.names_in_curves();
+    let of_axis = |&axis: &usize| of_axis(&map.axes()[axis]).called(&names[axis]);
+    let outer = outer.iter().map(of_axis);
+    let vertex = plane.iter().map(of_axis).chain([omega]);
     [number]
         .into_iter()
         .chain(outer)
         .chain(of_curve)
         .chain(vertex)
         .collect()
+}
+
+/// A word of a list.
+fn word(words: &str, place: usize) -> &str {
+    words.split(' ').nth(place).unwrap_or("")
 }
 
 fn write_curve(
@@ -104,9 +111,6 @@ fn write_curve(
     };
     let side = (piece.stable_side.sign() + 2) as usize;
     let kind = usize::from(piece.kind.number().unsigned_abs());
-    fn word(words: &str, place: usize) -> &str {
-        words.split(' ').nth(place).unwrap_or("")
-    }
     for vertex in &piece.vertices {
         table.whole(number)?;
         for &value in &curve.outer {

@@ -70,6 +70,14 @@ impl Column {
     fn of_parameter(parameter: &Quantity, unit: &str) -> Self {
         Self::of(parameter.name(), unit, parameter.long_name())
     }
+
+    /// The column under another name.
+    fn called(self, name: &str) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
 }
 
 /// The comments besides the columns: texts, and values of parameters.

@@ -16,6 +16,7 @@ use super::field::Field;
 use super::given::{GivenParameters, read_units};
 use super::keys::{SWEEP, names};
 use super::limit_spec::LimitDraft;
+use super::map_names::MOST_AXES;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::search::LIMIT;
@@ -177,6 +178,14 @@ impl Draft {
     fn read_axes(&mut self, axes: &Entry, most_points: u64) -> Result<(), SpecError> {
         self.axes_place = Some(axes.key_span.clone());
         for entry in axes.table()? {
+            if self.axes.len() == MOST_AXES {
+                let message = format!(
+                    "{} is one axis too many: a map has {MOST_AXES} at most",
+                    entry.path
+                );
+                return Err(SpecError::at(entry.key_span.clone(), message)
+                    .help("give it one value in [fixed], and make a sweep for each other value"));
+            }
             let parameter = self.give_axis(&entry)?;
             let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
             if points > MOST_POINTS_TOGETHER {

@@ -16,6 +16,7 @@
 //!   constructor
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
 //! - `linear_model`: the linear model of a setting: the letter's groups, or a general system
+//! - `map_names`: the names in a map that no parameter of a system may have; the most axes
 //! - `nearest`: suggestions for unknown names
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
@@ -52,6 +53,7 @@ pub mod keys;
 pub mod law_kind;
 mod limit_spec;
 pub mod linear_model;
+pub mod map_names;
 pub mod nearest;
 mod own_system;
 pub mod parameter;

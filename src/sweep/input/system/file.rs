@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::expression::{self, FUNCTIONS, VARIABLE};
 use super::parameter::{OwnParameter, WIDEST};
 use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
-use crate::sweep::input::field::Field;
+use crate::sweep::input::map_names;
 use crate::sweep::input::nearest::did_you_mean;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::toml_reader::{Entry, SpecError, entries, parse};
@@ -242,17 +242,15 @@ fn check_name(entry: &Entry) -> Result<(), SpecError> {
         let error = refuse(format!("`{name}` is no name of a parameter"));
         return error.map_err(|e| e.help("a letter, then letters, digits and _, 40 at most"));
     }
-    let of_map = ["status", "reason", "boundaries", "best", "line", "roots"];
     let why = match name {
         VARIABLE => "it is the variable of the polynomials",
         _ if name == Parameter::Tau.name() => "it is the delay, which every system has",
         _ if FUNCTIONS.contains(&name) => "it is a function",
-        _ if Field::from_name(name).is_some() || of_map.contains(&name) => {
-            "maps have a variable of that name"
-        }
+        _ if map_names::taken().any(|taken| taken == name) => "maps have a variable of that name",
         _ => return Ok(()),
     };
-    refuse(format!("{name} is reserved: {why}"))
+    let error = refuse(format!("{name} is reserved: {why}"));
+    error.map_err(|e| e.help(format!("call it {name}_1, for example")))
 }
 
 fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
