@@ -292,6 +292,35 @@ fn wrong_values_are_seen_by_second_methods() {
     }
 }
 
+/// Cells of a system that is no equation, which hold no count, contradict nothing; a count that is
+/// missing without a word does.
+#[test]
+fn refused_cells_are_not_asked_for_their_count() {
+    let text = "fields = [\"n_unstable\"]\n[system]\nP = \"b*(s^2 + 1)\"\nQ = \"b\"\n\
+                [system.parameters]\nb = 1\n[axes]\nb = [0, 0.5, 2]\n\
+                tau = { from = 0.5, to = 9.5, points = 19 }\n";
+    let folder = Folder::with(&[("map.toml", text)]);
+    expect(&folder.run(&["run", "map.toml", "-q"]), 0, "map.h5");
+    let verified = folder.run(&["verify", "map.h5", "--cells", "57"]);
+    expect(&verified, 0, "0 differ");
+    let json = folder.run(&["export", "map.h5"]);
+    let empty = out(&json)
+        .lines()
+        .filter(|line| line.contains("refused"))
+        .count();
+    assert_eq!(empty, 19, "{}", out(&json));
+    let answer = |status| {
+        let value = |_| f64::NAN;
+        let stored = Stored {
+            status,
+            value: &value,
+        };
+        second_look(&plan(text), &[0, 3], &stored).unwrap()[0].1
+    };
+    assert_eq!(answer(NOT_CONVERGED), Answer::Open);
+    assert_eq!(answer(0), Answer::Differs);
+}
+
 /// Where large steps of v0 throw stick-slip to a kind that ends earlier, nothing is contradicted,
 /// whether smaller ones come to the right end within their budget or not. v_c by the program of
 /// `tests/referee` in four kinds of steps: 0.0288921.

@@ -260,10 +260,12 @@ pub(super) fn already_there(
             ),
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
-        Err(error @ StoreError::DamagedFile { .. }) => Err(Failure::failed_with_help(
-            error.to_string(),
-            "it is left as it is; remove it first, or write elsewhere with -o",
-        )),
+        Err(error @ (StoreError::DamagedFile { .. } | StoreError::DamagedMap { .. })) => {
+            Err(Failure::failed_with_help(
+                error.to_string(),
+                "it is left as it is; remove it first, or write elsewhere with -o",
+            ))
+        }
         Err(error) => Err(error.into()),
     }
 }

@@ -277,10 +277,12 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
             format!("{name} is already there and no trace of slipmap: {why}"),
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
-        Err(error @ StoreError::DamagedFile { .. }) => Err(Failure::failed_with_help(
-            error.to_string(),
-            "it is left as it is; remove it first, or write elsewhere with -o",
-        )),
+        Err(error @ (StoreError::DamagedFile { .. } | StoreError::DamagedMap { .. })) => {
+            Err(Failure::failed_with_help(
+                error.to_string(),
+                "it is left as it is; remove it first, or write elsewhere with -o",
+            ))
+        }
         Err(error) => Err(error.into()),
     }
 }

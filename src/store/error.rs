@@ -100,6 +100,14 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// A file with the seal of a map, whose bytes have changed so that it is not read as one.
+    #[error("{} is a damaged map: its bytes have changed, {why}", path.display())]
+    DamagedMap {
+        /// The file.
+        path: PathBuf,
+        /// What is missing or different.
+        why: String,
+    },
     /// A map that was just written does not hold what was written.
     #[error("{} was not written as it should have been: {why}", path.display())]
     Unsound {

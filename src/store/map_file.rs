@@ -13,6 +13,7 @@ pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
 use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
+use super::seal::{self, Seal};
 use super::values::{Chunks, Number, read, whole};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
@@ -64,6 +65,15 @@ impl MapFile {
     /// When the file is missing, is open for writing in another program, is no HDF5 file or no map,
     /// has another format version, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        Self::read_file(path).map_err(|error| match error {
+            StoreError::NotAMap { path, why } if is_changed(&path) => {
+                StoreError::DamagedMap { path, why }
+            }
+            other => other,
+        })
+    }
+
+    fn read_file(path: &Path) -> Result<Self, StoreError> {
         let file = open::to_read(path, StoreError::not_a_map)?;
         let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
             let of_trace = one_number::<i32>(&file, schema::trace::FORMAT_VERSION);
@@ -466,6 +476,12 @@ impl MapFile {
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
     }
+}
+
+/// Whether a file has the seal of a map, and its bytes are not those that were sealed.
+fn is_changed(path: &Path) -> bool {
+    let never = AtomicBool::new(false);
+    matches!(seal::check(path, &never), Ok(Seal::Broken))
 }
 
 fn at(index: &[usize]) -> Vec<SliceOrIndex> {

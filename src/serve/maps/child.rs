@@ -122,6 +122,9 @@ fn refused(error: &StoreError) -> Refused {
         StoreError::OtherTiles { difference, .. } => {
             format!("its tiles are of something else: {difference}")
         }
+        StoreError::DamagedMap { why, .. } => {
+            format!("it is a damaged map: its bytes have changed, {why}")
+        }
         StoreError::DamagedFile { .. } => "it is a damaged HDF5 file".into(),
         StoreError::Foreign { .. } => "something that is not slipmap's is among its tiles".into(),
         other => other.to_string(),

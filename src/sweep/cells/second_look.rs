@@ -148,7 +148,9 @@ fn right_of(model: &LinearModel, tau: f64) -> Box<RightOf> {
             let groups = *groups;
             Box::new(move |line| roots_right_of(groups, tau, line))
         }
-        LinearModel::General(system) if system.class() == Class::DegreeUnknown => {
+        LinearModel::General(system)
+            if matches!(system.class(), Class::DegreeUnknown | Class::Refused) =>
+        {
             Box::new(|_| None)
         }
         LinearModel::General(system) => {
@@ -162,11 +164,15 @@ fn right_of(model: &LinearModel, tau: f64) -> Box<RightOf> {
 }
 
 fn count(right_of: &RightOf, stored: &Stored) -> Answer {
-    if stored.status & (MARGINAL | SATURATED) != 0 {
+    let counted = (stored.value)(Field::NUnstable);
+    let refused = stored.status & NOT_CONVERGED != 0 && counted.is_nan();
+    if refused || stored.status & (MARGINAL | SATURATED) != 0 {
         return Answer::Open;
     }
     match right_of(0.0) {
-        Some(roots) => told(roots as f64 == (stored.value)(Field::NUnstable)),
+        Some(roots) => told(roots as f64 == counted),
+        // A count that is missing says why in its status.
+        None if counted.is_nan() => Answer::Differs,
         None => Answer::Open,
     }
 }
