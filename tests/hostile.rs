@@ -10,6 +10,8 @@ mod limited;
 mod map;
 #[path = "common/program.rs"]
 mod program;
+#[path = "common/server.rs"]
+mod server;
 
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
@@ -25,7 +27,8 @@ use hdf5_sys::h5p::{H5Pset_chunk, H5Pset_deflate, H5Pset_external, H5Pset_filter
 use hdf5_sys::h5s::{H5S_class_t, H5Sclose, H5Screate, H5Screate_simple};
 use hdf5_sys::h5t::{H5T_class_t, H5Tclose, H5Tcreate};
 use limited::End;
-use program::{Folder, expect};
+use program::{Folder, err, expect, out};
+use server::Serving;
 
 /// The most memory that a command may take for any of these, bytes.
 const MOST_MEMORY: u64 = 500 << 20;
@@ -667,4 +670,315 @@ fn put_loud(file: &File, name: &str) -> hdf5::Result<()> {
     }
     let attribute = file.new_attr::<FixedUnicode<64>>().create(name)?;
     attribute.write_scalar(&LOUD.parse::<FixedUnicode<64>>().unwrap())
+}
+
+fn fifo(path: &Path) {
+    assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+}
+
+/// What stands in the place of a file: a pipe that nobody writes to, a device without an end, and a
+/// file of the system that waits for its reader.
+fn odd_files(path: &Path) -> Vec<&'static str> {
+    fifo(&path.join("pipe"));
+    for (name, to) in [("zero", "/dev/zero"), ("message", "/proc/kmsg")] {
+        std::os::unix::fs::symlink(to, path.join(name)).unwrap();
+    }
+    let readable = fs::OpenOptions::new().read(true).open("/proc/kmsg").is_ok();
+    let all = ["pipe", "zero", "message"].into_iter();
+    all.filter(|name| *name != "message" || readable).collect()
+}
+
+/// A command ends soon, with little memory, with one of `codes`; what it says.
+fn ended(folder: &Path, args: &[&str], codes: &[i32]) -> String {
+    let ended = limited::run(folder, args, &[]);
+    let text = ended.text();
+    let End::Code(code) = ended.end else {
+        panic!("{args:?}: {:?}: {text}", ended.end);
+    };
+    assert!(codes.contains(&code), "{args:?}: {code}: {text}");
+    assert!(!text.contains("panicked"), "{args:?}: {text}");
+    assert!(ended.peak < MOST_MEMORY, "{args:?}: {} bytes", ended.peak);
+    text
+}
+
+#[test]
+fn what_is_no_regular_file_is_not_read() {
+    const TABLE: &str =
+        "[axes]\ntau = [1, 2]\n[fixed]\nv0 = 0.1\n[friction]\nlaw = \"table\"\ntable = \"FILE\"\n";
+    const SYSTEM: &str = "system = \"FILE\"\n[axes]\ntau = [1, 2]\n";
+    let folder = Folder::with(&[("case.toml", CASE), ("sweep.toml", SWEEP)]);
+    let path = folder.path();
+    for odd in odd_files(path) {
+        for args in [
+            &["run", odd, "-o", "map.h5"][..],
+            &["plan", odd],
+            &["simulate", odd, "-o", "trace.h5"],
+            &["point", "--system", odd, "--tau", "1"],
+            &["best", "--system", odd, "--search", "a"],
+            &["point", "--setting", odd],
+            &["margins", "--setting", odd],
+            &["vc", "--friction", "table", "--table", odd],
+            &["info", odd],
+            &["plot", odd],
+            &["status", odd],
+            &["verify", odd],
+            &["export", odd],
+            &["merge", odd],
+            &["point", "--map", odd, "--at", "tau=1"],
+        ] {
+            let text = ended(path, args, &[2]);
+            assert!(!text.trim().is_empty(), "{args:?}");
+        }
+        for text in [TABLE, SYSTEM] {
+            fs::write(path.join("of_odd.toml"), text.replace("FILE", odd)).unwrap();
+            for command in ["run", "plan"] {
+                let text = ended(path, &[command, "of_odd.toml"], &[2]);
+                assert!(text.contains("it is no regular file"), "{text}");
+            }
+        }
+        // What they would replace or append to is left alone.
+        fs::create_dir(path.join("kept")).unwrap();
+        for name in ["fig2a.toml", "letter.html"] {
+            let to = path.join("kept").join(name);
+            std::os::unix::fs::symlink(path.join(odd), to).unwrap();
+        }
+        let keep = ["reproduce", "--quick", "--json", "--keep", "kept"];
+        let text = ended(path, &keep, &[2]);
+        assert!(text.contains("it is left as it is"), "{text}");
+        ended(
+            path,
+            &["reproduce", "--quick", "-o", "kept/letter.html"],
+            &[2],
+        );
+        fs::remove_dir_all(path.join("kept")).unwrap();
+        for name in ["map.png", "map.h5.log"] {
+            let _ = fs::remove_file(path.join(name));
+            std::os::unix::fs::symlink(path.join(odd), path.join(name)).unwrap();
+        }
+        let run = ["run", "sweep.toml", "-o", "map.h5", "--fresh"];
+        let text = ended(path, &run, &[0]);
+        assert!(text.contains("warning: no picture"), "{text}");
+    }
+}
+
+/// A pipe where a folder of tiles has its lock, manifest or tiles holds up no command, and no
+/// server.
+#[test]
+fn odd_files_among_tiles_hold_up_nobody() {
+    let folder = Folder::with(&[("sweep.toml", SWEEP)]);
+    let path = folder.path();
+    let run = ["run", "sweep.toml", "-o", "map.h5", "--shard", "1/2", "-q"];
+    expect(&folder.run(&run), 0, "complete");
+    let tiles = path.join("map.h5.tiles/1-of-2");
+    let files = fs::read_dir(&tiles).unwrap();
+    let names: Vec<_> = files.map(|file| file.unwrap().file_name()).collect();
+    assert!(names.len() >= 2, "{names:?}");
+    for name in names
+        .iter()
+        .map(|name| name.to_str().unwrap())
+        .chain(["lock"])
+    {
+        let kept = fs::read(tiles.join(name));
+        let _ = fs::remove_file(tiles.join(name));
+        fifo(&tiles.join(name));
+        for args in [
+            &["status", "map.h5"][..],
+            &["status", "map.h5", "--json"],
+            &["merge", "map.h5"],
+            &["merge", "map.h5", "--partial"],
+            &["verify", "map.h5"],
+            &run,
+            &[
+                "run",
+                "sweep.toml",
+                "-o",
+                "map.h5",
+                "--shard",
+                "1/2",
+                "--fresh",
+            ],
+            &["run", "sweep.toml", "-o", "map.h5", "--fresh"],
+        ] {
+            ended(path, args, &[0, 1, 2]);
+        }
+        if name == "lock" {
+            let text = ended(path, &run, &[2]);
+            assert!(text.contains("stands where the tiles go"), "{text}");
+        }
+        let serving = Serving::with(&folder, &[&path.to_string_lossy()]);
+        let begun = std::time::Instant::now();
+        for _ in 0..4 {
+            let answer = serving.get("/api/v1/maps");
+            assert_eq!(answer.status, 200, "{}", answer.head);
+        }
+        assert!(begun.elapsed().as_secs() < 20);
+        drop(serving);
+        fs::remove_file(tiles.join(name)).unwrap();
+        if let Ok(kept) = kept {
+            fs::write(tiles.join(name), kept).unwrap();
+        }
+        let _ = fs::remove_file(path.join("map.h5"));
+    }
+}
+
+/// A text of 16 MB, all of it small parts, takes a few hundred megabytes at most.
+#[test]
+fn texts_of_many_small_parts_take_little_memory() {
+    let folder = Folder::new();
+    let path = folder.path();
+    for (part, before) in [
+        ("1,", "[axes]\ntau = ["),
+        ("1, ", "[axes]\ntau = ["),
+        ("[],", "a = ["),
+        ("{},", "a = ["),
+        ("\n", ""),
+        ("#\n", ""),
+        (".a", "a"),
+        ("\"\",", "a = ["),
+        ("[[a]]\n", ""),
+        ("[", "a = "),
+        ("{a=", "a = "),
+    ] {
+        let text = before.to_owned() + &part.repeat(((16 << 20) - before.len()) / part.len());
+        fs::write(path.join("sweep.toml"), text).unwrap();
+        for args in [
+            &["run", "sweep.toml"][..],
+            &["plan", "sweep.toml"],
+            &["point", "--system", "sweep.toml", "--tau", "1"],
+        ] {
+            let text = ended(path, args, &[2]);
+            assert!(text.len() < 100_000, "{part:?}: {} bytes", text.len());
+        }
+    }
+}
+
+/// Texts that a system's file gives move no cursor and turn no direction.
+#[test]
+fn texts_of_systems_are_shown_as_such() {
+    const UNSEEN: &str = "a\u{202e}b\u{2028}c\u{200b}d\u{ad}e\u{e0041}f";
+    let system = format!(
+        "title = \"{UNSEEN}\"\nP = \"s^2 + 2*z*s + 1 + w\"\nQ = \"-w\"\n[parameters]\n\
+         z = {{ default = 0.02, long_name = \"{UNSEEN}\" }}\n\
+         w = {{ default = 0.1, long_name = \"{UNSEEN}\" }}\n\
+         [speed_axis]\nname = \"{UNSEEN}\"\nperiod = \"tau\"\n"
+    );
+    let sweep = format!(
+        "title = \"{UNSEEN}\"\nsystem = \"system.toml\"\n[axes]\nw = [0.1, 0.2]\ntau = [1, 2, 3]\n"
+    );
+    let folder = Folder::with(&[("system.toml", &*system), ("sweep.toml", &*sweep)]);
+    let feedback = "title = \"T\"\nB = \"s^2 + 0.2*s + 1\"\nA = \"g\"\n[parameters]\ng = 0\n";
+    let feedback = feedback.replace('T', UNSEEN);
+    fs::write(folder.path().join("loop.toml"), feedback).unwrap();
+    for args in [
+        &["point", "--system", "system.toml", "--tau", "1"][..],
+        &["point", "--system", "system.toml", "--tau", "1", "--json"],
+        &[
+            "best",
+            "--system",
+            "loop.toml",
+            "--search",
+            "g",
+            "--search-from",
+            "-0.3",
+            "--search-to",
+            "0.3",
+        ],
+        &["plan", "sweep.toml"],
+        &["plan", "sweep.toml", "--json"],
+        &["run", "sweep.toml", "-o", "map.h5"],
+        &["info", "map.h5"],
+        &["info", "map.h5", "--json"],
+        &["export", "map.h5", "--comments"],
+        &["export", "map.h5", "--comments", "--table", "boundaries"],
+        &["verify", "map.h5"],
+        &["point", "--map", "map.h5", "--at", "tau=1", "--at", "w=0.1"],
+    ] {
+        let said = folder.run(args);
+        let text = out(&said) + &err(&said);
+        let unseen = "\u{202e}\u{2028}\u{200b}\u{ad}\u{e0041}";
+        assert!(!text.contains(|c| unseen.contains(c)), "{args:?}: {text:?}");
+    }
+    let said = folder.run(&["point", "--system", "system.toml", "--tau", "1"]);
+    expect(
+        &said,
+        0,
+        "a\\u{202e}b\\u{2028}c\\u{200b}d\\u{ad}e\\u{e0041}f is",
+    );
+}
+
+/// Under every limit on the address space a run ends with a message or with its map, and what it
+/// has computed is kept.
+#[test]
+fn a_run_with_little_address_space_ends_in_order() {
+    let text = SWEEP
+        .replace("points = 7", "points = 40")
+        .replace("points = 9", "points = 300");
+    let folder = Folder::with(&[("sweep.toml", &text)]);
+    let limited = |limit: u64, args: &[&str]| {
+        let script = format!("ulimit -c 0; ulimit -v {limit}; exec \"$0\" \"$@\"");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_slipmap")]);
+        command.args(args).current_dir(folder.path());
+        command.output().unwrap()
+    };
+    let runs = |limit: u64| limited(limit, &["--version"]).status.code() == Some(0);
+    // The least in which the program starts at all, to 1 MiB.
+    let least = (10..2000).find(|mib| runs(mib << 10)).unwrap();
+    let mut ends = std::collections::BTreeMap::new();
+    for more in (0..30).chain([40, 60, 80, 100, 150, 200, 300, 500, 1000]) {
+        for threads in ["1", "8"] {
+            let args = [
+                "run",
+                "sweep.toml",
+                "-o",
+                "map.h5",
+                "--fresh",
+                "--threads",
+                threads,
+            ];
+            let output = limited((least + more) << 10, &args);
+            let text = out(&output) + &err(&output);
+            let code = output.status.code();
+            assert!(
+                matches!(code, Some(0..=2)),
+                "{more} MiB more: {:?}: {text}",
+                output.status
+            );
+            for word in [
+                "panicked",
+                "backtrace",
+                "memory allocation of",
+                "fatal runtime",
+            ] {
+                assert!(!text.contains(word), "{more} MiB more: {text}");
+            }
+            assert!(code == Some(0) || !text.trim().is_empty());
+            *ends.entry(code).or_insert(0) += 1;
+        }
+    }
+    println!("{least} MiB at least: {ends:?}");
+    assert!(ends.len() > 1, "{ends:?}");
+    expect(
+        &folder.run(&["verify", "map.h5", "--cells", "5", "--tiles", "1"]),
+        0,
+        "",
+    );
+}
+
+/// What a killed command has left beside its map or picture goes with the next one.
+#[test]
+fn leftovers_of_a_kill_are_removed() {
+    let folder = Folder::with(&[("sweep.toml", SWEEP)]);
+    let run = ["run", "sweep.toml", "-o", "map.h5", "-q"];
+    expect(&folder.run(&run), 0, "map.h5");
+    let clean = folder.files();
+    for beside in [".map.h5", ".map.png"] {
+        for purpose in ["lock", "part"] {
+            let left = folder.path().join(format!("{beside}.slipmap-{purpose}"));
+            fs::write(left, "").unwrap();
+        }
+    }
+    assert_eq!(folder.files().len(), clean.len() + 4);
+    expect(&folder.run(&run), 0, "already complete");
+    assert_eq!(folder.files(), clean);
 }

@@ -22,7 +22,7 @@ use super::json::{self, AnswerSchema, Inputs};
 use super::margins;
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
-use super::say;
+use super::say::{self, ForPeople};
 use super::setting;
 use super::system_args::SystemArgs;
 use super::vc;
@@ -119,7 +119,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let inputs = args.inputs(&setting, &ranges);
         json::print(&inputs, &BestAnswer::of(&told)?)?;
     } else {
-        let mut out = std::io::stdout().lock();
+        let mut out = ForPeople::begin();
         best_text::print(&mut out, &told, &args.parameters.units())?;
     }
     let Some(path) = &args.save else {

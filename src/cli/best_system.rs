@@ -21,6 +21,7 @@ use super::best_text::{abscissa_of, frequency_of, nothing_decays, print_regions,
 use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, Inputs};
+use super::say::ForPeople;
 use super::system_args::OTHERS;
 
 /// The JSON of a search of a system from a file.
@@ -109,7 +110,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         };
         return json::print(&asked.inputs(args, &answer.point), &answer);
     }
-    let out = &mut std::io::stdout().lock();
+    let out = &mut ForPeople::begin();
     Ok(asked.print(out, &found, &point)?)
 }
 

@@ -14,6 +14,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::tell_dimensionless;
 use super::point_args::PointArgs;
+use super::say::ForPeople;
 
 #[derive(Debug, clap::Args)]
 #[command(
@@ -66,7 +67,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         true => None,
         false => violations(&Point::at(&setting, wanted)?.stability),
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = ForPeople::begin();
     Ok(print(&mut out, (&margins, violations), &setting, &units)?)
 }
 

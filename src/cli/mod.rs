@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand, each thin.
 //!
+//! - `address_space`: limits on memory that the system sets
 //! - `asks`: the needs of commands that ask about a point, which determine their flags
 //! - `axis_facts`: the facts of an axis, for a sweep and for a map
 //! - `basin`: `slipmap basin`: its starts and its output
@@ -54,6 +55,7 @@
 //! - `vc`: `slipmap vc`
 //! - `verify`: `slipmap verify`
 
+mod address_space;
 mod asks;
 mod axis_facts;
 mod basin;
@@ -202,6 +204,7 @@ fn say_usage(error: &clap::Error) -> ExitCode {
 
 /// Runs the command line of this process.
 pub(crate) fn main() -> ExitCode {
+    address_space::prepare();
     let colours = Colours::asked();
     colours.apply();
     let parsed = Cli::command().color(colours.choice()).try_get_matches();

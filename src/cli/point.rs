@@ -20,6 +20,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::{check_picture, tell_dimensionless};
 use super::point_args::PointArgs;
+use super::say::ForPeople;
 use super::system_args::{OTHERS, SystemArgs};
 use super::{point_system, say};
 
@@ -167,7 +168,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         };
         json::print(&inputs, &point)?;
     } else {
-        print(&mut std::io::stdout().lock(), (&point, &setting), &units)?;
+        print(&mut ForPeople::begin(), (&point, &setting), &units)?;
     }
     let Some(plot) = &args.plot else {
         return Ok(());
@@ -202,7 +203,7 @@ fn of_system(
         return json::print(&inputs, &point);
     }
     Ok(point_system::print(
-        &mut std::io::stdout().lock(),
+        &mut ForPeople::begin(),
         model,
         &at,
         &point,

@@ -15,6 +15,7 @@ use slipmap::store::{MapFile, StoreError};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
+use super::address_space;
 use super::failure::Failure;
 use super::output::{self, output_path, provenance, warn_beyond_curve, warn_of_idle_delay};
 use super::say;
@@ -78,6 +79,20 @@ fn useful(plan: &Plan, asked: usize) -> usize {
 /// The number of useful threads, at most `asked`, that stays within `memory` bytes.
 pub(super) fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
     let needs = Memory::of(plan);
+    if let Some(left) = address_space::left().filter(|left| *left < memory) {
+        return needs
+            .threads_within(left, useful(plan, asked))
+            .ok_or_else(|| {
+                let (least, left) = (bytes(needs.on(1)), bytes(left));
+                Failure::bad_input_with_help(
+                    format!(
+                        "one thread takes up to {least} of memory in this sweep, the system allows \
+                     {left}"
+                    ),
+                    "`ulimit -v` shows the limit of a shell, in kB, and sets it",
+                )
+            });
+    }
     needs.threads_within(memory, useful(plan, asked)).ok_or_else(|| {
         let (least, given) = (bytes(needs.on(1)), bytes(memory));
         Failure::bad_input_with_help(
@@ -124,9 +139,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
     if threads < useful(&plan, asked) {
-        let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
+        let one = bytes(Memory::of(&plan).per_thread);
+        let memory = match address_space::left().filter(|left| *left < args.memory) {
+            Some(left) => format!("the system allows {}", bytes(left)),
+            None => format!("--memory allows {}", bytes(args.memory)),
+        };
         say::note(format_args!(
-            "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"
+            "{threads} of {asked} threads: each may take {one}, and {memory}"
         ));
     }
     let progress = Progress::new(say::is_quiet());

@@ -23,6 +23,30 @@ pub(super) fn text(text: &str) -> Result<(), Failure> {
     Ok(std::io::stdout().lock().write_all(text.as_bytes())?)
 }
 
+/// Standard output for people. What would move the cursor or turn the direction of writing is
+/// spelled out, whatever texts from files are printed.
+pub(super) struct ForPeople<'o>(StdoutLock<'o>);
+
+impl ForPeople<'_> {
+    /// Locks standard output: nothing else is written to it meanwhile.
+    pub(super) fn begin() -> Self {
+        Self(std::io::stdout().lock())
+    }
+}
+
+impl Write for ForPeople<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        // Formatting writes whole characters.
+        let text = String::from_utf8_lossy(bytes);
+        self.0.write_all(visible(&text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.flush()
+    }
+}
+
 /// Rows of a name and a text on standard output.
 pub(super) struct Rows<'o>(StdoutLock<'o>);
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
-use slipmap::store::{MapFile, StoreError};
+use slipmap::store::{MapFile, Output, StoreError};
 use slipmap::sweep::Parameter;
 use slipmap::sweep::input::quantity::Quantity;
 
@@ -31,6 +31,8 @@ pub(super) fn nothing_to_do(
     if lacks_picture(path, named) {
         show(path, named, signals);
     }
+    Output::clear_leftovers(path);
+    Output::clear_leftovers(&plot::beside(path));
     say::result(format_args!(
         "{} is already complete{remark}",
         path.display()
@@ -116,6 +118,7 @@ pub(super) fn show(path: &Path, named: Named, signals: &Signals) {
         Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
     };
     let picture = plot::beside(path);
+    Output::clear_leftovers(&picture);
     let options = PictureOptions {
         named,
         ..PictureOptions::default()

@@ -76,7 +76,8 @@ impl Signals {
             message: format!("interrupted: {message}"),
         };
         watch.look();
-        let watcher = thread::spawn(move || watch.until_done());
+        // Without a watcher, a signal is heeded once the work is done.
+        let watcher = thread::Builder::new().spawn(move || watch.until_done());
         let done = work();
         if !busy.swap(false, Ordering::SeqCst) {
             // The process is ending, so the code after the work must not begin.
@@ -84,7 +85,9 @@ impl Signals {
                 thread::park();
             }
         }
-        watcher.thread().unpark();
+        if let Ok(watcher) = watcher {
+            watcher.thread().unpark();
+        }
         done
     }
 }

@@ -27,7 +27,7 @@ use super::output::{
 };
 use super::parameters::ParameterArgs;
 use super::plot;
-use super::say;
+use super::say::{self, ForPeople};
 use super::signals::Signals;
 use super::sweep_file::read_case;
 use super::text_output::{STANDARD_OUTPUT, To, is_csv};
@@ -216,7 +216,7 @@ impl Args {
             };
             return json::print(&inputs, &answer);
         }
-        motion_text::print(&mut std::io::stdout().lock(), spec, trace)?;
+        motion_text::print(&mut ForPeople::begin(), spec, trace)?;
         let samples = grouped(trace.samples.len() as u64);
         say::result(format_args!("{}: {samples} samples", path.display()))
     }

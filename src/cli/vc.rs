@@ -21,6 +21,7 @@ use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
 use super::output;
 use super::parameters::{ParameterArgs, flag};
+use super::say::ForPeople;
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
@@ -222,7 +223,7 @@ fn print(
     if let Some(inputs) = json {
         return json::print(inputs, found);
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = ForPeople::begin();
     let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
     let entries = value.as_object().into_iter().flatten();
     for (key, value) in entries.filter(|(key, _)| !hidden.contains(&key.as_str())) {

@@ -57,7 +57,7 @@ pub fn bytes(n: u64) -> String {
     }
 }
 
-/// A duration in readable units: "0.12 s", "3 min 20 s", "5 h 12 min".
+/// A duration in readable units: "0.12 s", "3 min 20 s", "5 h 12 min", "3 years".
 #[must_use]
 pub fn seconds(s: f64) -> String {
     let whole = s.round() as u64;
@@ -66,9 +66,16 @@ pub fn seconds(s: f64) -> String {
         0..60 => format!("{s:.0} s"),
         60..3600 => format!("{} min {} s", whole / 60, whole % 60),
         3600..360_000 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
-        _ => format!("{} days", whole / 86_400),
+        360_000..TWO_YEARS => format!("{} days", whole / 86_400),
+        TWO_YEARS..LONGEST => format!("{} years", whole / YEAR),
+        _ => format!("more than {} years", grouped(LONGEST / YEAR)),
     }
 }
+
+/// Seconds of a year, and of the longest times that are told.
+const YEAR: u64 = 31_557_600;
+const TWO_YEARS: u64 = 2 * YEAR;
+const LONGEST: u64 = 1000 * YEAR;
 
 /// A number in full where that is short, else with four digits.
 #[must_use]
@@ -150,5 +157,10 @@ mod tests {
         assert_eq!(short(-0.25), "-0.25");
         assert_eq!(short(1.0 / 3.0), "3.333e-1");
         assert_eq!(seconds(18_720.0), "5 h 12 min");
+        assert_eq!(seconds(6e7), "694 days");
+        assert_eq!(seconds(1e10), "316 years");
+        for long in [4e10, 1e300, f64::INFINITY] {
+            assert_eq!(seconds(long), "more than 1 000 years");
+        }
     }
 }

@@ -100,23 +100,35 @@ impl Progress {
             self.last_line.set(Instant::now());
             let rate = self.done.get() as f64 / self.start.get().elapsed().as_secs_f64();
             let left = self.left.get().saturating_sub(self.done.get());
-            self.line(&format!(
-                "{:.1} %, {} cells/s, {} left",
-                100.0 * (1.0 - left as f64 / self.cells.get().max(1) as f64),
-                prefixed(rate),
-                seconds(left as f64 / rate),
-            ));
+            self.line(&told(self.cells.get(), left, rate));
         }
     }
 }
 
+/// How far a run is that computes `rate` cells in a second.
+fn told(cells: u64, left: u64, rate: f64) -> String {
+    let share = 100.0 * (1.0 - left as f64 / cells.max(1) as f64);
+    // Pieces without cells come first.
+    match rate > 0.0 {
+        true => {
+            let time = seconds(left as f64 / rate);
+            format!("{share:.1} %, {} cells/s, {time} left", prefixed(rate))
+        }
+        false => format!("{share:.1} %, time left unknown"),
+    }
+}
+
 fn style() -> ProgressStyle {
+    let left = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+        let _ = write!(out, "{}", seconds(state.eta().as_secs_f64()));
+    };
     let rate = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
         let _ = write!(out, "{} cells/s", prefixed(state.per_sec()));
     };
-    ProgressStyle::with_template("{bar:40} {percent:>3} %  {rate}  {eta} left")
+    ProgressStyle::with_template("{bar:40} {percent:>3} %  {rate}  {time} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
         .with_key("rate", rate)
+        .with_key("time", left)
 }
 
 impl Observer for Progress {

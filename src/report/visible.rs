@@ -33,30 +33,46 @@ pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// JSON in which such characters are escaped. They occur only inside its strings, and each has an
-/// escape of four digits.
+/// JSON in which such characters are escaped. They occur only inside its strings.
 #[must_use]
 pub fn visible_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
     for c in json.chars() {
         match c.is_control() || is_unseen(c) {
-            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            true => {
+                let mut units = [0; 2];
+                let units = c.encode_utf16(&mut units).iter();
+                shown.extend(units.map(|unit| format!("\\u{unit:04x}")));
+            }
             false => shown.push(c),
         }
     }
     shown
 }
 
-/// Directional marks, embeddings, overrides and isolates, line and paragraph separators, the byte
-/// order mark.
+/// Characters that show nothing themselves: directional marks, embeddings, overrides and isolates,
+/// line and paragraph separators, characters without a width, fillers, tags, the byte order mark.
 fn is_unseen(c: char) -> bool {
     matches!(
         c,
-        '\u{61c}'
+        '\u{ad}'
+            | '\u{34f}'
+            | '\u{61c}'
+            | '\u{115f}'
+            | '\u{1160}'
+            | '\u{17b4}'
+            | '\u{17b5}'
+            | '\u{180b}'..='\u{180f}'
             | '\u{200b}'..='\u{200f}'
             | '\u{2028}'..='\u{202e}'
             | '\u{2060}'..='\u{206f}'
+            | '\u{3164}'
             | '\u{feff}'
+            | '\u{ffa0}'
+            | '\u{fff0}'..='\u{fffb}'
+            | '\u{1bca0}'..='\u{1bca3}'
+            | '\u{1d173}'..='\u{1d17a}'
+            | '\u{e0000}'..='\u{e0fff}'
     )
 }
 
@@ -78,5 +94,12 @@ mod tests {
         assert!(shown.ends_with("µ…") && shown.chars().count() == LONGEST + 1);
         let json = serde_json::to_string("\u{9b}\u{1b}\u{202e}").unwrap();
         assert_eq!(visible_json(&json), "\"\\u009b\\u001b\\u202e\"");
+        let unseen = "a\u{ad}\u{200b}\u{2028}\u{3164}\u{e0041}\u{1d173}b";
+        let shown = visible(unseen);
+        let spelled = "a\\u{ad}\\u{200b}\\u{2028}\\u{3164}\\u{e0041}\\u{1d173}b";
+        assert_eq!(shown, spelled);
+        let json = serde_json::to_string(unseen).unwrap();
+        let back: String = serde_json::from_str(&visible_json(&json)).unwrap();
+        assert!(visible_json(&json).is_ascii() && back == unseen);
     }
 }

@@ -60,6 +60,15 @@ impl Output {
         })
     }
 
+    /// Removes what a run that died has left beside `path`: a lock and a temporary file. What
+    /// another run holds stays.
+    pub fn clear_leftovers(path: &Path) {
+        let left = ["lock", "part"].map(|purpose| hidden_beside(path, purpose));
+        if left.iter().any(|path| path.symlink_metadata().is_ok()) {
+            drop(Self::claim(path));
+        }
+    }
+
     /// The final name.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -127,5 +136,14 @@ mod tests {
         fs::write(hidden_beside(&path, "lock"), "").unwrap();
         fs::write(hidden_beside(&path, "part"), "torn").unwrap();
         assert!(Output::claim(&path).is_ok());
+        for purpose in ["lock", "part"] {
+            fs::write(hidden_beside(&path, purpose), "").unwrap();
+            Output::clear_leftovers(&path);
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
+        let held = Output::claim(&path).unwrap();
+        fs::write(held.part(), "half").unwrap();
+        Output::clear_leftovers(&path);
+        assert!(held.part().exists() && Output::claim(&path).is_err());
     }
 }

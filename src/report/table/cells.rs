@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{About, Column, Table, TableError, put_number};
 use crate::linear::status::FLAGS;
-use crate::report::visible::visible_line;
 use crate::store::cell_blocks::CellBlock;
 use crate::store::schema::{STATUS, root};
 use crate::store::{MapAxis, MapFile};
@@ -62,10 +61,8 @@ pub(super) fn of_axis(axis: &MapAxis) -> Column {
 }
 
 fn columns(map: &MapFile, fields: &[Field]) -> Vec<Column> {
-    let of_field = |field: &Field| {
-        let about = visible_line(&map.long_name(*field));
-        Column::of(field.name(), map.field_unit(*field), about)
-    };
+    let of_field =
+        |field: &Field| Column::of(field.name(), map.field_unit(*field), map.long_name(*field));
     let flags = FLAGS
         .map(|(mask, name)| format!("{mask} {name}"))
         .join(", ");

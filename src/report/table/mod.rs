@@ -180,7 +180,12 @@ fn write_comments(out: &mut impl Write, about: &About, columns: &[Column]) -> io
     }
     for column in columns {
         let unit = in_brackets(&visible_line(&column.unit));
-        writeln!(out, "# {}{unit}: {}", column.name, column.about)?;
+        writeln!(
+            out,
+            "# {}{unit}: {}",
+            column.name,
+            visible_line(&column.about)
+        )?;
     }
     Ok(())
 }

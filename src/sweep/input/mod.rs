@@ -35,6 +35,7 @@
 //! - `system_draft`: the system of a sweep: its parameters, and what it cannot have
 //! - `table_file`: a sweep or case file with the contents of the files that it names
 //! - `toml_reader`: TOML with the place of every key and value
+//! - `toml_size`: bounds the memory for reading TOML
 //! - `units`: the units of a sweep
 //! - `vc_keys`: a sweep file's keys for the critical velocity
 
@@ -71,5 +72,6 @@ pub mod system;
 mod system_draft;
 pub mod table_file;
 pub mod toml_reader;
+mod toml_size;
 pub mod units;
 mod vc_keys;

@@ -6,6 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::nearest::did_you_mean;
+use super::toml_size;
 use crate::model::Shown;
 
 /// The most characters of a text for display.
@@ -59,6 +60,7 @@ pub(super) struct Entry<'t> {
 
 /// Parses a whole document.
 pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, SpecError> {
+    toml_size::check(text)?;
     DeTable::parse(text).map_err(|error| SpecError {
         message: error.message().to_owned(),
         span: error.span(),

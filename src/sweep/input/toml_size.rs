@@ -1,0 +1,131 @@
+//! Bounds the memory for reading TOML: counts the signs and words of a text before it is read.
+//!
+//! Each of them takes about a hundred bytes while a text is read.
+
+use super::toml_reader::SpecError;
+
+/// The most signs and words: brackets, commas, dots, keys, values, line ends, runs of blanks.
+const MOST: u64 = 2_000_000;
+
+/// Refuses a text with too many signs and words.
+///
+/// # Errors
+/// Points at the first one that is too many.
+pub(super) fn check(text: &str) -> Result<(), SpecError> {
+    let bytes = text.as_bytes();
+    let (mut at, mut count) = (0, 0);
+    while at < bytes.len() {
+        count += 1;
+        if count > MOST {
+            let message = format!("more than {MOST} words and signs, which is too much to read");
+            let help = "an axis of many points is written as { from = 0, to = 1, points = 1000 }";
+            return Err(SpecError::at(at..at + 1, message).help(help));
+        }
+        at += length(&bytes[at..]);
+    }
+    Ok(())
+}
+
+/// The length of the sign or word at the beginning of `bytes`, which are not empty.
+fn length(bytes: &[u8]) -> usize {
+    let until = |end: &dyn Fn(u8) -> bool| {
+        let rest = bytes[1..].iter();
+        1 + rest.take_while(|byte| !end(**byte)).count()
+    };
+    match bytes[0] {
+        b' ' | b'\t' => until(&|byte| !matches!(byte, b' ' | b'\t')),
+        b'#' => until(&|byte| byte == b'\n'),
+        quote @ (b'"' | b'\'') => length_of_string(bytes, quote),
+        sign if is_sign(sign) => 1,
+        _ => until(&|byte| is_sign(byte) || matches!(byte, b' ' | b'\t' | b'#' | b'"' | b'\'')),
+    }
+}
+
+fn is_sign(byte: u8) -> bool {
+    matches!(
+        byte,
+        b'.' | b'=' | b',' | b'[' | b']' | b'{' | b'}' | b'\r' | b'\n'
+    )
+}
+
+/// The length of a string with its quotes; one that does not end goes to the end of its line, or of
+/// the text after three quotes.
+fn length_of_string(bytes: &[u8], quote: u8) -> usize {
+    let three = [quote; 3];
+    let (end, one_line): (&[u8], _) = match bytes.starts_with(&three) {
+        true => (&three, false),
+        false => (&three[..1], true),
+    };
+    let mut at = end.len();
+    while at < bytes.len() {
+        match bytes[at] {
+            b'\\' if quote == b'"' => at += 1,
+            b'\n' if one_line => return at,
+            _ if bytes[at..].starts_with(end) => return at + end.len(),
+            _ => {}
+        }
+        at += 1;
+    }
+    bytes.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(text: &str) -> Vec<&str> {
+        let (mut at, mut parts) = (0, Vec::new());
+        while at < text.len() {
+            let next = at + length(&text.as_bytes()[at..]);
+            parts.push(&text[at..next]);
+            at = next;
+        }
+        parts
+    }
+
+    #[test]
+    fn texts_are_cut_at_their_signs() {
+        let text =
+            "a.b = [1.5, \"x, \\\" #y\"] # c, d\n'k' = '''\n, ''' \"open, \n= \"\"\"open, \n";
+        let cut = [
+            "a",
+            ".",
+            "b",
+            " ",
+            "=",
+            " ",
+            "[",
+            "1",
+            ".",
+            "5",
+            ",",
+            " ",
+            "\"x, \\\" #y\"",
+            "]",
+            " ",
+            "# c, d",
+            "\n",
+            "'k'",
+            " ",
+            "=",
+            " ",
+            "'''\n, '''",
+            " ",
+            "\"open, ",
+            "\n",
+            "=",
+            " ",
+            "\"\"\"open, \n",
+        ];
+        assert_eq!(parts(text), cut);
+        assert_eq!(parts("µ=\"ä\\"), ["µ", "=", "\"ä\\"]);
+    }
+
+    #[test]
+    fn the_first_that_is_too_many_is_pointed_at() {
+        let most = usize::try_from(MOST).unwrap();
+        assert_eq!(check(&",".repeat(most)), Ok(()));
+        let error = check(&format!("{}ab", ",".repeat(most))).unwrap_err();
+        assert_eq!(error.span, Some(most..most + 1));
+    }
+}
