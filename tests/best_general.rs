@@ -449,3 +449,55 @@ fn what_is_wrong_with_a_search_is_told() {
         assert!(err(&output).contains(told), "{args}: {}", err(&output));
     }
 }
+
+/// Eight regions where the slope of friction is 0 and the feedback of the load is late by δ: a weak
+/// gain a moves the pair at ±i by a/2 [sin(δ + τ) − sin δ], so it decays with a < 0 at delays
+/// between 0 and π − 2δ, with a > 0 between π − 2δ and 2π, and so on four times. Between them
+/// nothing moves it, and rounding told 18 regions more, with relaxation times up to 2e21.
+#[test]
+fn rounding_is_no_region() {
+    for latency in [0.0, 0.05] {
+        let args = format!("best --mu-prime=0 --control load --json --latency {latency}");
+        let args: Vec<&str> = args.split(' ').collect();
+        let told = json(&Folder::new(), &args);
+        let regions = told["regions"].as_array().expect("regions");
+        let mut signs = [0, 0];
+        for region in regions {
+            let [gain, tau, abscissa] = ["alpha", "tau", "abscissa"].map(|of| number(&region[of]));
+            assert!(number(&region["relaxation_time"]) < 1e6, "{region}");
+            let walk = Walk {
+                terms: vec![
+                    (vec![1.0, 0.0, 1.0], 0.0),
+                    (vec![-gain], latency),
+                    (vec![gain], latency + tau),
+                ],
+            };
+            assert_eq!(walk.right_of(0.5 * abscissa).unwrap_or(0), 0, "{region}");
+            signs[usize::from(gain > 0.0)] += 1;
+        }
+        assert_eq!(signs, [4, 4], "latency {latency}: {told}");
+        assert_eq!(told["regions_left_out"], 0);
+    }
+}
+
+/// At one delay the gains that hold an upright pendulum are one interval: one region. It used to be
+/// told gain by gain, 64 times.
+#[test]
+fn one_delay_has_one_region() {
+    let args = "best --json --system pd --set stiffness=-1 --set k_d=1.5 --search k_p \
+                --tau-from 0.3 --tau-to 0.3";
+    let args: Vec<&str> = args.split_whitespace().collect();
+    let told = json(&Folder::new(), &args);
+    assert_eq!(told["regions"].as_array().map(Vec::len), Some(1), "{told}");
+    assert_eq!(told["regions_left_out"], 0);
+    let value = number(&told["best"]["value"]);
+    assert_eq!(number(&told["best"]["tau"]), 0.3);
+    // λ² − 1 + (k_p + 1.5 λ) e^(−0.3 λ).
+    let stable = |value: f64| {
+        let walk = Walk {
+            terms: vec![(vec![-1.0, 0.0, 1.0], 0.0), (vec![value, 1.5], 0.3)],
+        };
+        walk.right_of(0.0) == Some(0)
+    };
+    assert!(stable(value) && !stable(0.99) && !stable(2.0 * value + 4.0));
+}

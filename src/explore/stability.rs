@@ -195,7 +195,7 @@ impl Stability {
         stop: &Stop,
     ) -> Self {
         let line = DelayLine::of(system);
-        let counter = RootCounter::new(system).heeding(stop);
+        let counter = RootCounter::new(system).bounded().heeding(stop);
         let at = tau / time_unit;
         let found = GeneralSpectrum::at(&counter, &line, at, wanted.roots.into());
         let line = line.in_physical_time(time_unit);

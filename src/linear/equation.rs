@@ -45,6 +45,9 @@ pub trait Equation: Copy {
     /// The number of unstable roots at `tau`, from `unstable`; none where it is undecided.
     fn unstable_at(unstable: &Self::Unstable, tau: f64) -> Option<u64>;
 
+    /// Begins another cell, for equations whose work for a cell is bounded.
+    fn begin(self) {}
+
     /// How far back in time the equation reaches at the delay `tau`.
     fn memory_span(self, tau: f64) -> f64 {
         tau

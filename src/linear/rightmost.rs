@@ -38,6 +38,7 @@ impl Rightmost {
         });
         let wanted = wanted.max(1);
         let mut finder = RootFinder::default();
+        equation.begin();
         // A pair is two roots.
         let found = finder.rightmost(equation, tau, 2 * wanted as u64, f64::NEG_INFINITY);
         let (roots, missing) = match found {

@@ -43,6 +43,8 @@ pub struct RootFinder {
     followed: Vec<Complex64>,
     /// How often the branches of the logarithm were not enough.
     pub collocations: u64,
+    /// Steps of counts that a search has added up, to bound its work.
+    pub(in crate::linear) steps: u64,
 }
 
 /// Some roots right of the line were not found, or one lies on it.

@@ -178,6 +178,7 @@ impl RootTracker {
             // Without control the delay is taken as 0: e^(−λτ) must not overflow where nothing
             // depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
+            equation.begin();
             if i == 0 || (first + i).is_multiple_of(BLOCK) {
                 self.margins = [KeptMargin::NONE; MOST_ROOTS];
             }

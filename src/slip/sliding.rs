@@ -44,7 +44,7 @@ impl Sliding {
         if !count_on(&line, self.tau, MarginalTolerance::default()).stable() {
             return None;
         }
-        let spectrum = Spectrum::at(&RootCounter::new(&system), &line, self.tau, 1);
+        let spectrum = Spectrum::at(&RootCounter::new(&system).bounded(), &line, self.tau, 1);
         Some(spectrum.abscissa).filter(|abscissa| spectrum.certified && *abscissa < 0.0)
     }
 

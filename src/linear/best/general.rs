@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::regions::{Bound, MOST_STRETCHES, Stretch};
 use super::search::{ByParameters, Family, Place, beside_essential};
+use crate::linear::MarginalTolerance;
 use crate::linear::crossing::Direction;
 use crate::linear::equation::{Equation, Pair};
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
@@ -17,6 +18,8 @@ use crate::model::stop::Stop;
 const DIFFERENCE: f64 = 1e-3;
 /// The least scale of a gain, over the width of what is searched.
 const LEAST_SCALE: f64 = 1e-2;
+/// Steps of counts at one place: where they take more, nothing is known of it.
+const MOST_STEPS: u64 = 1 << 17;
 /// Delays at which a line without a closed form is counted, and halvings of its ends.
 const SAMPLES: u32 = 256;
 const MOST_HALVINGS: u32 = 60;
@@ -146,6 +149,13 @@ fn crossings(line: &DelayLine) -> impl Iterator<Item = &crate::linear::Crossing>
     crossings.filter(|c| c.direction != Direction::Touch)
 }
 
+/// Whether rounding leaves open what holds in the middle of a stretch: there roots may cross at
+/// frequencies that are not told apart.
+fn in_doubt(line: &DelayLine, stretch: &Stretch) -> bool {
+    let middle = stretch.at(0.5).tau;
+    line.count(middle, MarginalTolerance::default()).marginal
+}
+
 /// The crossing at the delay `tau`, if one is there.
 fn bound(line: &DelayLine, tau: f64) -> Option<Bound> {
     crossings(line).enumerate().find_map(|(i, crossing)| {
@@ -160,7 +170,7 @@ impl Family for General<'_> {
     fn setting(&self, place: Place) -> Option<RootCounter> {
         let system = (self.system_at)(place.gain, place.tau)?;
         let known = !matches!(system.class(), Class::DegreeUnknown | Class::Refused);
-        known.then(|| RootCounter::new(&system))
+        known.then(|| RootCounter::new(&system).allowing(MOST_STEPS))
     }
 
     fn equation(setting: &RootCounter) -> impl Equation {
@@ -208,7 +218,9 @@ impl Family for General<'_> {
         if tau > 0.0 && system.class() == Class::Infinite {
             return f64::INFINITY;
         }
-        match finder.abscissa(&counter, tau) {
+        let found = finder.abscissa(&counter, tau);
+        finder.steps += counter.steps();
+        match found {
             Ok(found) => return found,
             Err(_) if tau == 0.0 => return f64::INFINITY,
             Err(_) => {}
@@ -218,11 +230,10 @@ impl Family for General<'_> {
         let essential = system.essential_abscissa(tau);
         let close = |line: f64| beside_essential(line, essential);
         let close = beside_accumulation(system, tau).is_some_and(close);
-        if close && nothing_beyond_accumulation(&counter, tau).is_some() {
-            essential
-        } else {
-            f64::INFINITY
-        }
+        let before = counter.steps();
+        let nothing = close && nothing_beyond_accumulation(&counter, tau).is_some();
+        finder.steps += counter.steps() - before;
+        if nothing { essential } else { f64::INFINITY }
     }
 
     /// The gains between which the number of crossings changes, halved until they are one, and 0,
@@ -261,6 +272,7 @@ impl Family for General<'_> {
                 let bounds = (bound(&line, interval.from), bound(&line, interval.to));
                 Stretch::cut(gain, (interval.from, interval.to), delays, bounds)
             })
+            .filter(|stretch| !in_doubt(&line, stretch))
             .collect()
     }
 }

@@ -49,8 +49,10 @@ use search::Evaluator;
 use crate::model::elementary::power;
 use crate::model::stop::Stop;
 
-/// Regions whose optimum is looked for; the others are counted.
+/// Regions that are told; the others are counted.
 pub const MOST_REGIONS: usize = 64;
+/// Regions whose optimum is looked for.
+const MOST_SEARCHED: usize = 4 * MOST_REGIONS;
 /// Lines of a region's lattice, and places on each of its stretches.
 const LATTICE_LINES: usize = 24;
 const LATTICE_PLACES: usize = 10;
@@ -176,6 +178,12 @@ impl Optimum {
     pub fn relaxation_time(&self) -> Option<f64> {
         (self.abscissa < 0.0).then(|| -1.0 / self.abscissa)
     }
+
+    /// Whether roots decay by more than rounding, or what the search left open, can do to the
+    /// abscissa.
+    fn decays(&self) -> bool {
+        self.abscissa < -self.margin
+    }
 }
 
 /// A stable region of the box.
@@ -187,6 +195,8 @@ pub struct Region {
     pub delays: (f64, f64),
     /// The setting of fastest decay in it.
     pub best: Optimum,
+    /// Its stable delays at the gains sampled.
+    stretches: Stretches,
 }
 
 /// What [`best`] finds.
@@ -194,9 +204,12 @@ pub struct Region {
 pub struct Best {
     /// The setting of fastest decay in the box; where nothing is stable, of slowest growth.
     pub overall: Optimum,
-    /// Every stable region with its own best setting, by their shortest delays.
+    /// Every stable region with its own best setting, by their shortest delays. Stable is where
+    /// roots decay by more than rounding can do to the abscissa; regions with the same best setting
+    /// are one.
     pub regions: Vec<Region>,
-    /// Regions beyond the first [`MOST_REGIONS`], which were not searched.
+    /// Regions beyond the first [`MOST_REGIONS`], and those at which the work of the search came to
+    /// its bound; they were not searched.
     pub regions_left_out: usize,
 }
 
@@ -215,17 +228,24 @@ pub fn best(search: &Search<impl Family>) -> Best {
 #[must_use]
 pub fn best_until(search: &Search<impl Family>, stop: &Stop) -> Option<Best> {
     let mut evaluator = Evaluator::heeding(stop);
-    let mut found = stable_regions(search, stop);
-    let regions_left_out = found.len().saturating_sub(MOST_REGIONS);
-    found.truncate(MOST_REGIONS);
-    let regions: Vec<Region> = found
-        .iter()
-        .take_while(|_| !stop.is_set())
-        .map(|stretches| region(&mut evaluator, search, stretches))
-        .collect();
-    if stop.is_set() {
-        return None;
+    let found = stable_regions(search, stop);
+    let (mut regions, mut regions_left_out) = (Vec::new(), 0);
+    for (searched, stretches) in found.into_iter().enumerate() {
+        if stop.is_set() {
+            return None;
+        }
+        if regions.len() == MOST_REGIONS || searched >= MOST_SEARCHED || evaluator.ended() {
+            regions_left_out += 1;
+            continue;
+        }
+        let region = region(&mut evaluator, search, stretches);
+        if region.best.decays() {
+            add(&mut regions, region);
+        } else if evaluator.ended() {
+            regions_left_out += 1;
+        }
     }
+    regions.sort_by(|p: &Region, q: &Region| p.shortest().total_cmp(&q.shortest()));
     let overall = regions
         .iter()
         .map(|region| &region.best)
@@ -250,11 +270,7 @@ pub fn best_until(search: &Search<impl Family>, stop: &Stop) -> Option<Best> {
 /// A place from which to go down, the abscissa there and the length scales around it.
 type Start = (f64, Place, Frame);
 
-fn region(
-    evaluator: &mut Evaluator,
-    search: &Search<impl Family>,
-    stretches: &Stretches,
-) -> Region {
+fn region(evaluator: &mut Evaluator, search: &Search<impl Family>, stretches: Stretches) -> Region {
     let hull = |values: &dyn Fn(usize) -> (f64, f64)| {
         (0..stretches.len()).map(values).fold(
             (f64::INFINITY, f64::NEG_INFINITY),
@@ -263,14 +279,64 @@ fn region(
     };
     let gains = hull(&|i| (stretches[i].gain, stretches[i].gain));
     let delays = hull(&|i| (stretches[i].from, stretches[i].to));
-    let starts = lattice(stretches, gains, |place| evaluator.abscissa(search, place));
+    let starts = lattice(&stretches, gains, |place| evaluator.abscissa(search, place));
     let best = lowest(evaluator, search, starts);
     let with = |(from, to): (f64, f64), place: f64| (from.min(place), to.max(place));
     Region {
         gains: with(gains, best.gain),
         delays: with(delays, best.tau),
         best,
+        stretches,
     }
+}
+
+impl Region {
+    /// Whether a place is in the region, as the sampled gain next to it has it.
+    fn holds(&self, place: &Optimum) -> bool {
+        let apart = |s: &&Stretch| (s.gain - place.gain).abs();
+        let nearest = self.stretches.iter();
+        let nearest = nearest.min_by(|p, q| apart(p).total_cmp(&apart(q)));
+        let ends = [self.stretches.first(), self.stretches.last()];
+        let ([Some(first), Some(last)], Some(nearest)) = (ends, nearest) else {
+            return false;
+        };
+        let there =
+            |s: &Stretch| s.gain == nearest.gain && s.from <= place.tau && place.tau <= s.to;
+        (first.gain..=last.gain).contains(&place.gain) && self.stretches.iter().any(there)
+    }
+
+    /// Both regions as one.
+    fn joined(mut self, other: Self) -> Self {
+        let hull = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        self.gains = hull(self.gains, other.gains);
+        self.delays = hull(self.delays, other.delays);
+        self.stretches.extend(other.stretches);
+        self.stretches.sort_by(|p, q| {
+            let by_gain = p.gain.total_cmp(&q.gain);
+            by_gain.then(p.from.total_cmp(&q.from))
+        });
+        if other.best.abscissa < self.best.abscissa {
+            self.best = other.best;
+        }
+        self
+    }
+
+    /// The shortest stable delay that was seen.
+    fn shortest(&self) -> f64 {
+        let all = self.stretches.iter().map(|s| s.from);
+        all.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Adds a region. One whose best setting lies in another region is part of that: rounding has cut
+/// it off, where gains are so weak that it tells little.
+fn add(regions: &mut Vec<Region>, mut region: Region) {
+    let part = |p: &Region, of: &Region| !p.holds(&p.best) && of.holds(&p.best);
+    let same = |known: &Region, region: &Region| part(known, region) || part(region, known);
+    while let Some(i) = regions.iter().position(|known| same(known, &region)) {
+        region = regions.remove(i).joined(region);
+    }
+    regions.push(region);
 }
 
 /// A value on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly over the

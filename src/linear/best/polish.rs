@@ -36,7 +36,7 @@ pub(super) fn polished(
     let edge = search.on_edge(place);
     conditions(evaluator.roots(search, place, CANDIDATES), edge)
         .into_iter()
-        .take_while(|_| !evaluator.stopped())
+        .take_while(|_| !evaluator.ended())
         .filter_map(|condition| solve(&condition, search, place, frame, edge))
         .map(|(at, solved)| optimum(&solved, search, at, edge))
         .find(|found| found.certified && found.abscissa <= abscissa + 1e-9 * (1.0 + abscissa.abs()))
@@ -50,7 +50,7 @@ pub(super) fn unpolished<F: Family>(
 ) -> Optimum {
     let rightmost = evaluator.roots(search, place, 1).first();
     let frequency = rightmost.map(|root| root.lambda.im);
-    let margin = match evaluator.stopped() {
+    let margin = match evaluator.ended() {
         true => None,
         false => decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0)),
     };

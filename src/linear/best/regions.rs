@@ -58,7 +58,9 @@ impl Stretch {
 
     fn touches(&self, other: &Self) -> bool {
         let overlap = self.from < other.to && other.from < self.to;
-        overlap || (self.bounds == other.bounds && self.bounds.0.is_some())
+        // Of a box that is a line a stretch is a point.
+        let points = (self.from, self.to) == (other.from, other.to) && self.from == self.to;
+        overlap || points || (self.bounds == other.bounds && self.bounds.0.is_some())
     }
 
     /// The place at the fraction `s` of the stretch.

@@ -12,16 +12,16 @@
 
 use super::descend::descend;
 use super::letter::Letter;
-use super::regions::stable_regions;
 use super::search::{Place, Search};
 use super::{Best, Start, far_apart, lattice};
 use crate::linear::margins::{Changes, Setting, radius_up_to};
 use crate::linear::spectrum::RootFinder;
 use crate::model::Groups;
-use crate::model::stop::Stop;
 
 /// The radius, in units of the frame, to which a descent goes.
 const FINE: f64 = 1e-6;
+/// Slower decay than this is told only where it is proved.
+const UNPROVED: f64 = 1e-8;
 /// Places that a proof may add.
 const MOST_PLACES: usize = 24;
 /// The relative gap allowed between the proved W and the largest sampled one; the second value
@@ -142,17 +142,16 @@ pub fn worst_around(search: &Search<Letter>, gain: f64, tau: f64, spread: f64) -
 pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robust> {
     let mut worst = Worst::new(search, spread);
     // No setting of a region is better than its best one.
-    let stretches = stable_regions(search, &Stop::default());
-    let mut regions: Vec<_> = best.regions.iter().zip(&stretches).collect();
-    regions.sort_by(|(p, _), (q, _)| p.best.abscissa.total_cmp(&q.best.abscissa));
+    let mut regions: Vec<_> = best.regions.iter().collect();
+    regions.sort_by(|p, q| p.best.abscissa.total_cmp(&q.best.abscissa));
     let mut found: Option<(Start, f64)> = None;
-    for (region, stretches) in regions {
+    for region in regions {
         let lowest = found.as_ref().map_or(0.0, |(_, value)| *value);
         if region.best.abscissa >= lowest {
             break;
         }
         let value = |place| worst.at(place, f64::INFINITY).0;
-        for start in far_apart(lattice(stretches, region.gains, value)) {
+        for start in far_apart(lattice(&region.stretches, region.gains, value)) {
             let (place, value) = worst.descend(&start, 1.0);
             if found.as_ref().is_none_or(|(_, least)| value < *least) {
                 found = Some(((value, place, start.2), value));
@@ -160,7 +159,8 @@ pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robus
         }
     }
     let (start, _) = found.filter(|(_, value)| *value < 0.0)?;
-    Some(worst.refined(start))
+    let found = worst.refined(start);
+    (found.certified || found.worst_abscissa < -UNPROVED).then_some(found)
 }
 
 impl Worst<'_> {

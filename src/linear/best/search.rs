@@ -123,6 +123,9 @@ impl<F> Search<F> {
     }
 }
 
+/// Steps of counts, with latency, after which a search ends: half a minute at the most.
+const MOST_STEPS: u64 = 1 << 26;
+
 /// Evaluates the spectral abscissa, keeping its memory from place to place.
 #[derive(Debug, Default)]
 pub(super) struct Evaluator {
@@ -131,7 +134,8 @@ pub(super) struct Evaluator {
 }
 
 impl Evaluator {
-    /// An evaluator that knows nothing of any place once `stop` is set.
+    /// An evaluator that knows nothing of any place once `stop` is set, or once so much was counted
+    /// that the search has to end with what it has.
     pub(super) fn heeding(stop: &Stop) -> Self {
         Self {
             finder: RootFinder::default(),
@@ -139,15 +143,16 @@ impl Evaluator {
         }
     }
 
-    /// Whether nobody waits for the search any more.
-    pub(super) fn stopped(&self) -> bool {
-        self.stop.is_set()
+    /// Whether the search is to end: nobody waits for it any more, or its work has come to its
+    /// bound.
+    pub(super) fn ended(&self) -> bool {
+        self.stop.is_set() || self.finder.steps > MOST_STEPS
     }
 
     /// The largest real part of a root, right of which none is missed; infinite where roots could
     /// not be found, so that no search goes there.
     pub(super) fn abscissa(&mut self, search: &Search<impl Family>, place: Place) -> f64 {
-        if self.stopped() {
+        if self.ended() {
             return f64::INFINITY;
         }
         search.family.abscissa(&mut self.finder, place)
@@ -161,7 +166,7 @@ impl Evaluator {
         place: Place,
         wanted: u64,
     ) -> &[Root] {
-        let setting = search.family.setting(place).filter(|_| !self.stopped());
+        let setting = search.family.setting(place).filter(|_| !self.ended());
         let Some(setting) = setting else {
             return &[];
         };

@@ -46,6 +46,7 @@ fn nothing_around_an_optimum_is_better() {
             best,
             gains,
             delays,
+            ..
         } in best(&search).regions
         {
             assert!(best.certified, "{search:?} {best:?}");

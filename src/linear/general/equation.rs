@@ -57,6 +57,10 @@ impl Equation for &RootCounter {
         p_third + tau * jet.delayed * (tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend)
     }
 
+    fn begin(self) {
+        RootCounter::begin(self);
+    }
+
     fn memory_span(self, tau: f64) -> f64 {
         tau + self.system().latency()
     }

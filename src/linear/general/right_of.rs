@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
-use super::latency::Form;
+use super::latency::{Budget, Form, MOST_STEPS_OF_A_CELL};
 use super::parts::{Angle, Decay};
 use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::shifted::Shifted;
@@ -40,6 +40,7 @@ pub struct RootCounter {
     p: Factors,
     q: Factors,
     stop: Stop,
+    pub(super) budget: Budget,
 }
 
 /// A polynomial, given by its zeros.
@@ -155,7 +156,38 @@ impl RootCounter {
             p: Factors::of(p),
             q: Factors::of(&q.without_open_leading()),
             stop: Stop::default(),
+            budget: Budget::default(),
         }
+    }
+
+    /// The same counter, but with latency the work of a cell is bounded, by a number of steps:
+    /// once these are taken every number of roots is undecided, until [`RootCounter::begin`].
+    #[must_use]
+    pub fn bounded(self) -> Self {
+        self.allowing(MOST_STEPS_OF_A_CELL)
+    }
+
+    /// The same with another number of steps.
+    #[must_use]
+    pub(in crate::linear) fn allowing(self, most: u64) -> Self {
+        let budget = Budget::of(most);
+        Self { budget, ..self }
+    }
+
+    /// Begins another cell, see [`RootCounter::bounded`].
+    pub fn begin(&self) {
+        self.budget.renew();
+    }
+
+    /// Whether the work of this cell has come to its bound.
+    #[must_use]
+    pub fn is_spent(&self) -> bool {
+        self.budget.is_spent()
+    }
+
+    /// The steps that all counts took.
+    pub(in crate::linear) fn steps(&self) -> u64 {
+        self.budget.spent()
     }
 
     /// The same counter, to which every number of roots is undecided once `stop` is set.

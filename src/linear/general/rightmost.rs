@@ -14,6 +14,9 @@ use crate::linear::spectrum::Incomplete;
 /// How near to the line at which roots accumulate a root is told from it, in units of 1/τ.
 const BESIDE: f64 = 1e-9;
 
+/// Lines between the axis and the one at which roots accumulate, as parts of the way.
+const FARTHER: [f64; 4] = [0.0, 0.5, 0.9, 0.99];
+
 /// What is known of the roots at one delay.
 #[derive(Debug, Clone)]
 pub struct Spectrum {
@@ -50,8 +53,18 @@ pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
 /// where that is not known.
 #[must_use]
 pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f64> {
-    let beside = beside_accumulation(counter.system(), tau);
-    beside.filter(|&line| counter.right_of(tau, line) == RightOf::Roots(0))
+    let beside = beside_accumulation(counter.system(), tau)?;
+    counter.begin();
+    if counter.system().latency() > 0.0 {
+        // So near to that line a count takes long, and one root farther right is enough.
+        let essential = counter.system().essential_abscissa(tau);
+        let farther = FARTHER.map(|part| part * essential).into_iter();
+        let root = |line| matches!(counter.right_of(tau, line), RightOf::Roots(1..));
+        if farther.filter(|line| *line > beside).any(root) {
+            return None;
+        }
+    }
+    (counter.right_of(tau, beside) == RightOf::Roots(0)).then_some(beside)
 }
 
 impl Spectrum {
@@ -85,7 +98,8 @@ impl Spectrum {
         let mut found = Rightmost::at(counter, tau, wanted, count);
         // Fewer than are wanted may lie right of where they accumulate.
         let mut fewer = wanted;
-        while found.roots.is_empty() && fewer > 1 && essential_abscissa.is_finite() {
+        let accumulate = essential_abscissa.is_finite();
+        while found.roots.is_empty() && fewer > 1 && accumulate && !counter.is_spent() {
             fewer -= 1;
             found = Rightmost::at(counter, tau, fewer, count);
         }

@@ -151,7 +151,7 @@ impl GeneralColumns {
         if known == 0 {
             return;
         }
-        let counter = RootCounter::new(line.system).heeding(line.stop);
+        let counter = RootCounter::new(line.system).bounded().heeding(line.stop);
         self.find_accumulations(line, &counter, known);
         let mut begin = 0;
         while begin < known {

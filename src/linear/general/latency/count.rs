@@ -156,12 +156,13 @@ impl<'f> Way<'f> {
     fn turns(
         &self,
         (window, precision): (Window, f64),
+        left: &mut u64,
         mut each: impl FnMut(Turn) -> bool,
     ) -> Result<i64, NoNumber> {
         let undecided = |_: TooMany| NoNumber::Undecided;
         let wave = self.on_line.wave(self.form);
         let start = wave
-            .zeros(window, precision, |switch| {
+            .zeros(window, (precision, left), |switch| {
                 self.turn(&switch).is_some_and(&mut each)
             })
             .map_err(undecided)?;
@@ -276,8 +277,8 @@ impl RootCounter {
         each: impl FnMut(Turn) -> bool,
     ) -> Result<i64, NoNumber> {
         let mut switches = Switches::default();
-        Way::new(on_line, form, self.late_factors(), &mut switches)
-            .ok_or(NoNumber::Undecided)?
-            .turns(to, each)
+        let way = Way::new(on_line, form, self.late_factors(), &mut switches);
+        let way = way.ok_or(NoNumber::Undecided)?;
+        self.budget.spend(|left| way.turns(to, left, each))
     }
 }

@@ -4,6 +4,7 @@
 //! (4) and (5) of [`general::line`](super::line) as without latency, but |P|² − |Q|² swings with
 //! the delay that is fixed, and its zeros are found along ω.
 //!
+//! - [`budget`]: how much counting may still be done for a cell
 //! - [`wave`]: functions that swing with one delay, and all their zeros
 //! - [`prepared`]: such a function and its slope at one frequency, with bounds; steps and zeros
 //! - [`window`]: where zeros of a polynomial can be
@@ -13,6 +14,7 @@
 //! - [`line`]: all latencies at one delay; the latency margin
 //! - [`roots`]: D and its derivatives, where roots can be, and starts for them
 
+mod budget;
 mod count;
 mod line;
 mod on_line;
@@ -26,6 +28,7 @@ use super::parts::{Angle, Feedback};
 use super::polynomial::Polynomial;
 use super::switches::Switches;
 use super::system::{Class, System};
+pub(super) use budget::{Budget, MOST_STEPS_OF_A_CELL};
 use on_line::OnLine;
 
 pub use on_line::Form;

@@ -24,7 +24,7 @@ use crate::linear::rounded::Rounded;
 use crate::model::elementary::power;
 
 /// Steps after which the zeros are too many to be listed.
-const MOST_STEPS: usize = 1 << 17;
+pub(super) const MOST_STEPS: u64 = 1 << 17;
 /// A step is at most this many times as long as the step before: the bound M belongs to its end.
 const GROWTH: f64 = 2.0;
 /// The part of the way to the last zero that is tried as the first step.
@@ -137,14 +137,15 @@ pub(crate) struct Start {
 impl Wave {
     /// Tells `found` the positive zeros in the window by rising frequency, each to `precision`,
     /// relative, or to rounding where that is 0; f must be positive beyond it. f(0) is taken for 0
-    /// where it may be 0. `found` ends the search by returning false.
+    /// where it may be 0. `found` ends the search by returning false. `left` is how many steps may be
+    /// taken, less by those that were.
     ///
     /// # Errors
     /// When there are too many, or `found` ended it.
     pub(crate) fn zeros(
         &self,
         window: Window,
-        precision: f64,
+        (precision, left): (f64, &mut u64),
         mut found: impl FnMut(Switch) -> bool,
     ) -> Result<Start, TooMany> {
         let Window { from, to } = window;
@@ -163,10 +164,11 @@ impl Wave {
             to,
             precision,
         };
-        for _ in 0..MOST_STEPS {
+        while *left > 0 {
             if way.here.omega >= to {
                 return Ok(start);
             }
+            *left -= 1;
             if let Some(switch) = way.go()
                 && !found(switch)
             {
@@ -179,7 +181,7 @@ impl Wave {
     /// Lists all positive zeros in the window by falling frequency; see [`Wave::zeros`].
     pub(crate) fn switches(&self, window: Window, switches: &mut Switches) -> Result<(), TooMany> {
         switches.list.clear();
-        let start = self.zeros(window, 0.0, |switch| {
+        let start = self.zeros(window, (0.0, &mut { MOST_STEPS }), |switch| {
             switches.list.push(switch);
             true
         })?;
