@@ -10,6 +10,17 @@ pub trait Pair {
     fn at(&self, lambda: Complex64) -> [Complex64; 4];
 }
 
+/// D and D′ with a bound on the rounding of D, evaluated with twice the digits.
+#[derive(Debug, Clone, Copy)]
+pub struct Exact {
+    /// D.
+    pub value: Complex64,
+    /// D′.
+    pub slope: Complex64,
+    /// A bound on the error of D, that of the coefficients included.
+    pub rounding: f64,
+}
+
 /// A characteristic function D(λ) = P(λ) + Q(λ) e^(−λτ) at every delay τ ≥ 0.
 ///
 /// Dimensionless: delays in any unit, λ in its inverse.
@@ -29,6 +40,11 @@ pub trait Equation: Copy {
 
     /// D and its derivatives.
     fn jet(self, tau: f64, lambda: Complex64) -> Jet;
+
+    /// D with twice the digits; none where that is not known.
+    fn exact(self, _tau: f64, _lambda: Complex64) -> Option<Exact> {
+        None
+    }
 
     /// A bound on the rounding of `jet.value`.
     fn rounding(self, jet: &Jet, tau: f64, lambda: Complex64) -> f64;

@@ -20,8 +20,10 @@
 //! - `branches`: starting values for roots from the branches of the logarithm
 //! - `certificate`: the number of roots right of any vertical line: argument principle in closed
 //!   form
+//! - `cluster`: roots that rounding does not tell apart, with twice the digits
 //! - `collocation`: roots as eigenvalues; the only file that imports faer
 //! - `controlled`: the controlled oscillator as an `equation`
+//! - `double`: numbers of twice the digits
 //! - `equation`: a characteristic equation, with all that is needed to find and follow its roots
 //! - `general`: any linear system with one delay
 //! - `newton`: polishing of a root (Halley's method) and its error
@@ -37,12 +39,14 @@ pub mod best;
 mod branches;
 pub mod certificate;
 pub mod characteristic;
+mod cluster;
 pub mod collocation;
 mod controlled;
 pub mod count;
 pub mod crossing;
 pub mod curves;
 pub mod decay;
+mod double;
 pub mod equation;
 pub mod gains;
 pub mod general;

@@ -8,6 +8,7 @@
 use num_complex::Complex64;
 
 use super::branches::starting_values;
+use super::cluster::taken_apart;
 use super::collocation::{MOST_NODES, nodes_for};
 use super::equation::Equation;
 use super::newton::{Root, divide, polish};
@@ -23,12 +24,14 @@ const FARTHEST_LEFT: f64 = 700.0;
 /// halvings.
 const CROWDED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 64;
+/// How often a search goes back from a line so far left that rounding tells nothing there.
+const MOST_RETREATS: u32 = 8;
 /// How near to the line at which roots accumulate they are searched, in units of 1/τ.
 const BESIDE_ESSENTIAL: f64 = 1e-6;
 /// Within so many times that distance, no more halvings are made towards that line.
 const CLOSE: f64 = 16.0;
 /// How far from a cluster of nearly equal roots its number may be counted.
-const FARTHEST_COUNT: f64 = 0.03;
+const FARTHEST_COUNT: f64 = 0.3;
 /// Roots that are followed from one point to the next.
 const FOLLOWED: usize = 4;
 /// How far left of the rightmost one they are counted, relative.
@@ -241,9 +244,13 @@ impl RootFinder {
             .position(Root::nearly_multiple)
             .unwrap_or(0);
         self.roots.retain(|r| !r.nearly_multiple());
-        for (i, root) in some_of(&cluster, together).enumerate() {
-            let error = root.error.max(extent);
-            self.roots.insert(place + i, Root { error, ..root });
+        if let Some(apart) = taken_apart(equation, tau, &cluster, together) {
+            self.roots.extend(apart);
+        } else {
+            for (i, root) in some_of(&cluster, together).enumerate() {
+                let error = root.error.max(extent);
+                self.roots.insert(place + i, Root { error, ..root });
+            }
         }
         self.sort();
         true
@@ -331,16 +338,24 @@ fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -
     };
     let (mut left, mut right) = (0.0, equation.root_bound(0.0, 0.0));
     let mut step = 0.5_f64.min(1.0 / tau);
-    let mut enough = None;
+    let (mut enough, mut known, mut retreats) = (None, 0, 0);
     loop {
         match count(left) {
             Some((line, n)) if n >= wanted => {
                 enough = Some((line, n));
                 break;
             }
+            // So far left rounding tells nothing, and nothing is known farther right.
+            None if left < 0.0 && known == 0 && retreats < MOST_RETREATS => {
+                retreats += 1;
+                left = right.min(0.0) + 0.25 * (left - right.min(0.0));
+                step = 0.5 * (right.min(0.0) - left);
+                continue;
+            }
             None if left < 0.0 => break,
             _ if left <= leftmost => break,
-            _ => {}
+            Some((_, n)) => known = n,
+            None => {}
         }
         right = left;
         // Near the line at which roots accumulate there are too many right of a line.

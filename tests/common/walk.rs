@@ -1,6 +1,8 @@
 //! An independent count of roots of D(z) = Σ p_k(z) e^(−z t_k): the argument along a rectangle, in
 //! steps within which it cannot turn far. It shares nothing with the crate.
 
+#![allow(dead_code, reason = "no test uses all of it")]
+
 use std::f64::consts::PI;
 
 use num_complex::Complex64;
@@ -70,40 +72,53 @@ impl Walk {
     /// near to the line.
     pub(crate) fn right_of(&self, line: f64) -> Option<u64> {
         let radius = self.radius(line)?;
-        let far = radius.max(line + 1.0);
-        let corners = [
-            Complex64::new(far, 0.0),
-            Complex64::new(far, radius),
-            Complex64::new(line, radius),
-            Complex64::new(line, 0.0),
-        ];
-        let (mut turned, mut steps) = (0.0, 0);
-        for side in corners.windows(2) {
-            let (mut z, length) = (side[0], (side[1] - side[0]).norm());
-            let direction = (side[1] - side[0]) / length;
-            let (mut gone, mut here) = (0.0, self.at(z));
-            let mut step = 0.1 * length;
-            while gone < length {
-                // |D′| step ≤ |D|/2: the argument turns by 30° at most.
-                step *= 2.0;
-                // Also where the bound overflows.
-                let near = |step| self.slope(z, step) * step <= 0.5 * here.norm();
-                while !near(step) {
-                    step *= 0.5;
-                }
-                steps += 1;
-                if steps > MOST_STEPS || step < 1e-9 {
-                    return None;
-                }
-                gone = (gone + step).min(length);
-                z = side[0] + direction * gone;
-                let there = self.at(z);
-                turned += (there / here).arg();
-                here = there;
-            }
-        }
-        let halves = turned / PI;
-        assert!((halves - halves.round()).abs() < 1e-6, "{self:?} {halves}");
-        Some(halves.round() as u64)
+        let at = |z| self.at(z);
+        // |D′| step ≤ |D|/2; false also where the bound overflows.
+        let near = |z, here: Complex64, step| self.slope(z, step) * step <= 0.5 * here.norm();
+        zeros_between(line, radius, &at, &near)
     }
+}
+
+/// How many zeros of a real function lie right of `line`, all of them within `radius`. `near` says
+/// of a point, the value there and a step whether the value changes by half of it at most. None
+/// where that takes too long, or where a zero is too near to the line.
+pub(crate) fn zeros_between(
+    line: f64,
+    radius: f64,
+    at: &dyn Fn(Complex64) -> Complex64,
+    near: &dyn Fn(Complex64, Complex64, f64) -> bool,
+) -> Option<u64> {
+    let far = radius.max(line + 1.0);
+    let corners = [
+        Complex64::new(far, 0.0),
+        Complex64::new(far, radius),
+        Complex64::new(line, radius),
+        Complex64::new(line, 0.0),
+    ];
+    let (mut turned, mut steps) = (0.0, 0);
+    for side in corners.windows(2) {
+        let (mut z, length) = (side[0], (side[1] - side[0]).norm());
+        let direction = (side[1] - side[0]) / length;
+        let (mut gone, mut here) = (0.0, at(z));
+        let mut step = 0.1 * length;
+        while gone < length {
+            // The argument turns by 30° at most.
+            step *= 2.0;
+            while !near(z, here, step) {
+                step *= 0.5;
+            }
+            steps += 1;
+            if steps > MOST_STEPS || step < 1e-9 {
+                return None;
+            }
+            gone = (gone + step).min(length);
+            z = side[0] + direction * gone;
+            let there = at(z);
+            turned += (there / here).arg();
+            here = there;
+        }
+    }
+    let halves = turned / PI;
+    assert!((halves - halves.round()).abs() < 1e-6, "{line} {halves}");
+    Some(halves.round() as u64)
 }

@@ -11,7 +11,7 @@ use super::turning::Turning;
 use super::zeros::Zeros;
 use crate::linear::characteristic::Jet;
 use crate::linear::collocation::eigenvalues;
-use crate::linear::equation::{Equation, Pair};
+use crate::linear::equation::{Equation, Exact, Pair};
 
 impl Pair for &System {
     #[inline]
@@ -43,6 +43,10 @@ impl Equation for &RootCounter {
 
     fn rounding(self, jet: &Jet, tau: f64, lambda: Complex64) -> f64 {
         self.system().rounding(jet, tau, lambda)
+    }
+
+    fn exact(self, tau: f64, lambda: Complex64) -> Option<Exact> {
+        self.system().exact(tau, lambda)
     }
 
     fn third(self, jet: &Jet, tau: f64, lambda: Complex64) -> Complex64 {

@@ -14,6 +14,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::isolate::MOST;
 use super::parts::Angle;
 use super::reason::Reason;
 use super::right_of::RootCounter;
@@ -29,6 +30,9 @@ use crate::linear::newton::divide;
 
 /// Delays tried for a count by (7) of `right_of` where P + Q leaves n(0⁺) open.
 const TRIES: usize = 40;
+/// An error of a phase that is not worth a slower evaluation, up to the degree of which zeros of F
+/// are isolated and above.
+const ENOUGH: [f64; 2] = [1e-6, 1e-11];
 
 /// The crossings of a line of delays.
 #[derive(Debug, Clone, Default)]
@@ -78,6 +82,16 @@ impl DelayLine {
 
     /// Finds what [`DelayLine::of`] finds, in the memory of this line.
     pub fn find(&mut self, system: &System) {
+        let unit = system.time_unit();
+        if unit == 1.0 {
+            self.find_in_unit(system);
+        } else {
+            self.find_in_unit(&system.in_unit(unit));
+            self.scale(unit);
+        }
+    }
+
+    fn find_in_unit(&mut self, system: &System) {
         self.clear();
         let without_origin = system.without_common_origin();
         let class = system.class();
@@ -94,7 +108,7 @@ impl DelayLine {
             self.always_marginal = true;
         }
         if let Some(rest) = without_origin {
-            self.find(&rest);
+            self.find_in_unit(&rest);
             self.rests_at_origin();
             return;
         }
@@ -113,21 +127,6 @@ impl DelayLine {
             return;
         }
         self.find_crossings(system);
-    }
-
-    /// This line with delays in a unit of time of which `time_unit` makes one dimensionless.
-    #[must_use]
-    pub fn in_physical_time(mut self, time_unit: f64) -> Self {
-        for crossing in &mut self.crossings {
-            *crossing = crossing.scaled(time_unit);
-        }
-        if let Some(passage) = &mut self.passage {
-            passage.tau *= time_unit;
-            passage.error *= time_unit;
-        }
-        self.open_from *= time_unit;
-        self.time_unit *= time_unit;
-        self
     }
 
     pub(super) fn clear(&mut self) {
@@ -167,8 +166,9 @@ impl DelayLine {
             if system.class() == Class::NeutralLimit {
                 modulus = modulus.without_open_leading();
             }
-            let near = each_switch(&modulus, |switch| {
-                let phase = on_axis.phase(switch.omega, switch.error);
+            let enough = ENOUGH[usize::from(on_axis.degree() > MOST)];
+            let near = each_switch(&modulus, Some(&on_axis), |switch| {
+                let phase = on_axis.phase(switch.omega, switch.error, enough);
                 self.add_crossing(system, &switch, phase);
             });
             let Some(near) = near else {
@@ -196,7 +196,7 @@ impl DelayLine {
     }
 
     fn add_crossing(&mut self, system: &System, switch: &Switch, phase: Option<Angle>) {
-        if switch.sign == 0 && system.has_common_zero(switch.omega) {
+        if switch.sign == 0 && system.has_common_zero(switch.omega, switch.error) {
             self.always_marginal = true;
             self.reason = self.reason.or(Some(Reason::RootOnAxis));
             return;

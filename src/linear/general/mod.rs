@@ -2,11 +2,14 @@
 //!
 //! - `polynomial`: P, Q and what is made of them, each coefficient with a bound on its error
 //! - `zeros`: all zeros of such a polynomial, in discs that are known to hold them
+//! - `factored`: the zeros of F from the values of P and Q, where its coefficients cancel
 //! - `system`: one setting, its class, and |P|² − |Q|² and D on a vertical line
+//! - `unit`: the unit of time in which a system is of the order of 1, and lines in other units
 //! - `switches`: where |P| and |Q| change places on such a line
 //! - `right_of`: how many roots lie right of a line, in closed form
 //! - `turning`: the whole turns that the count is made of
 //! - `equation`: a system as what finds and follows roots takes it
+//! - `exact`: D and P on the axis with twice the digits
 //! - `rightmost`: the rightmost roots, or where roots accumulate
 //! - `line`: all delays of a setting: crossings and counts
 //! - `count`: the count at one delay
@@ -30,6 +33,8 @@ mod count;
 pub mod curves;
 pub mod ends;
 mod equation;
+mod exact;
+mod factored;
 mod isolate;
 mod latency;
 mod level;
@@ -50,6 +55,7 @@ mod starts;
 mod switches;
 pub mod system;
 mod turning;
+mod unit;
 pub mod zeros;
 
 pub use latency::Form;

@@ -32,6 +32,8 @@ use crate::model::stop::Stop;
 
 /// How far the two ways to an argument may differ before neither is trusted.
 pub(super) const SAME_TURN: f64 = 1.0;
+/// An error of a phase that is not worth a slower evaluation.
+const ENOUGH: f64 = 1e-4;
 
 /// Counts roots of one system at any delay right of any line.
 #[derive(Debug, Clone)]
@@ -251,8 +253,9 @@ impl RootCounter {
         if let Some(feedback) = self.system.late() {
             feedback.switches_on(tau, line, &mut switches);
         } else if let Some(decay) = Decay::new(line, tau) {
-            let modulus = self.system.on_line(line, decay).modulus();
-            switches.find(&modulus.without_open_leading());
+            let on_line = self.system.on_line(line, decay);
+            let modulus = on_line.modulus().without_open_leading();
+            switches.find(&modulus, Some(&on_line));
         }
         switches.list.iter().map(|s| (s.omega, s.sign)).collect()
     }
@@ -313,7 +316,7 @@ impl RootCounter {
             return Err(NoNumber::Infinite);
         }
         let mut going_on = true;
-        let found = each_switch(&modulus, |switch| {
+        let found = each_switch(&modulus, Some(&on_line), |switch| {
             going_on = going_on && self.turn(&on_line, line, &switch).is_some_and(&mut each);
         });
         if !going_on || found.is_none() {
@@ -329,7 +332,7 @@ impl RootCounter {
     }
 
     fn turn(&self, on_line: &Shifted, line: f64, switch: &Switch) -> Option<Turn> {
-        let Angle { value, error } = on_line.phase(switch.omega, switch.error)?;
+        let Angle { value, error } = on_line.phase(switch.omega, switch.error, ENOUGH)?;
         // The argument of −P Q* is half a turn from that of P Q*.
         let fraction = value + PI;
         let phase = fraction + TAU * self.whole_turns(line, switch.omega, value)?;

@@ -67,11 +67,53 @@ pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f6
     (counter.right_of(tau, beside) == RightOf::Roots(0)).then_some(beside)
 }
 
+/// The margin of an abscissa in units in which it is `by` times as large: relative to the larger of
+/// 1 and of its size.
+#[must_use]
+pub fn scaled_margin(margin: f64, abscissa: f64, by: f64) -> f64 {
+    if by == 1.0 {
+        return margin;
+    }
+    let distance = margin * abscissa.abs().max(1.0);
+    distance * by / (abscissa * by).abs().max(1.0)
+}
+
 impl Spectrum {
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0 of the line `line` of the
     /// system of `counter`.
     #[must_use]
     pub fn at(counter: &RootCounter, line: &DelayLine, tau: f64, wanted: usize) -> Self {
+        let unit = counter.system().time_unit();
+        if unit == 1.0 {
+            return Self::in_unit(counter, line, (tau, unit), wanted);
+        }
+        let counter = RootCounter::new(&counter.system().in_unit(unit));
+        let mut spectrum = Self::in_unit(&counter, line, (tau / unit, unit), wanted);
+        spectrum.scale(1.0 / unit);
+        spectrum
+    }
+
+    /// These roots times `by`.
+    fn scale(&mut self, by: f64) {
+        self.margin = scaled_margin(self.margin, self.abscissa, by);
+        self.abscissa *= by;
+        self.essential_abscissa *= by;
+        for root in &mut self.roots {
+            root.lambda *= by;
+            root.error *= by;
+        }
+        if let Some(missing) = &mut self.missing {
+            missing.line *= by;
+        }
+    }
+
+    /// The roots at the delay `tau` in units of `unit`; the times of `line` are not in that unit.
+    fn in_unit(
+        counter: &RootCounter,
+        line: &DelayLine,
+        (tau, unit): (f64, f64),
+        wanted: usize,
+    ) -> Self {
         let essential_abscissa = counter.system().essential_abscissa(tau);
         let mut spectrum = Self {
             count: None,
@@ -80,13 +122,13 @@ impl Spectrum {
             essential_abscissa,
             margin: f64::NAN,
             certified: false,
-            reason: line.reason_at(tau),
+            reason: line.reason_at(tau * unit),
             missing: None,
         };
         if line.uncounted && tau > 0.0 {
             return spectrum;
         }
-        let count = line.count(tau, MarginalTolerance::default());
+        let count = line.count(tau * unit, MarginalTolerance::default());
         spectrum.count = Some(count);
         if let Some(beside) = nothing_beyond_accumulation(counter, tau) {
             spectrum.abscissa = essential_abscissa;
@@ -106,7 +148,10 @@ impl Spectrum {
         spectrum.abscissa = found.roots.first().map_or(f64::NAN, |r| r.lambda.re);
         spectrum.margin = found.margin;
         spectrum.certified = found.certified;
-        spectrum.missing = found.missing;
+        // With control and delay there are infinitely many roots.
+        let none = found.roots.is_empty() && tau > 0.0 && !counter.system().uncontrolled();
+        let line = f64::NEG_INFINITY;
+        spectrum.missing = found.missing.or(none.then_some(Incomplete { line }));
         spectrum.roots = found.roots;
         spectrum
     }

@@ -9,8 +9,9 @@
 //! itself. (3) to (5) are in [`line`](super::line), (7) is in [`right_of`](super::right_of).
 
 use super::parts::{Angle, Decay, remembered};
-use super::polynomial::Polynomial;
+use super::polynomial::{At, Polynomial};
 use crate::linear::rounded::Rounded;
+use crate::model::elementary::norm;
 
 /// P and Q, or B and A in feedback form, as polynomials in λ − σ.
 #[derive(Debug, Clone, Copy)]
@@ -66,8 +67,9 @@ impl Shifted {
         Rounded::sum([first.value, echo.value]).plus_error(first.error + echo.error)
     }
 
+    #[inline(always)]
     fn constants(&self) -> [Rounded; 2] {
-        [&self.first, &self.second].map(|p| p.coefficient(0))
+        [self.first.coefficient(0), self.second.coefficient(0)]
     }
 
     /// p(0) − q(0): F_σ(0) is D(σ) times this.
@@ -95,7 +97,7 @@ impl Shifted {
     }
 
     fn by_squares(&self) -> Polynomial {
-        let Decay { kappa, lost } = self.decay;
+        let kappa = self.decay.kappa;
         let (first, second) = (&self.first, &self.second);
         let own = first.square();
         let Some(memory) = self.memory else {
@@ -118,14 +120,7 @@ impl Shifted {
             };
             return own.plus(&both, -2.0);
         }
-        let square = kappa.times(kappa);
-        // 1 − κ² = (1 − κ)(1 + κ).
-        let lost = lost.times(Rounded::sum([1.0, kappa.value]).plus_error(kappa.error));
-        let outer = remembered(memory, self.decay).times(
-            Rounded::sum([1.0, memory * kappa.value]).plus_error(memory.abs() * kappa.error),
-        );
-        let middle = Rounded::sum([lost.value, square.value * (1.0 - memory)])
-            .plus_error(lost.error + square.error * (1.0 - memory));
+        let [outer, middle, lost] = self.off_axis(memory);
         let sum = if memory == 0.0 {
             own
         } else {
@@ -135,16 +130,87 @@ impl Shifted {
             .plus(&second.square().scaled(lost), 1.0)
     }
 
+    /// 1 − κ²R², 1 − κ²R and 1 − κ² of (8).
+    fn off_axis(&self, memory: f64) -> [Rounded; 3] {
+        let Decay { kappa, lost } = self.decay;
+        let square = kappa.times(kappa);
+        // 1 − κ² = (1 − κ)(1 + κ).
+        let lost = lost.times(Rounded::sum([1.0, kappa.value]).plus_error(kappa.error));
+        let outer = remembered(memory, self.decay).times(
+            Rounded::sum([1.0, memory * kappa.value]).plus_error(memory.abs() * kappa.error),
+        );
+        let middle = Rounded::sum([lost.value, square.value * (1.0 - memory)])
+            .plus_error(lost.error + square.error * (1.0 - memory));
+        [outer, middle, lost]
+    }
+
+    /// The larger degree of both.
+    #[inline]
+    pub(super) fn degree(&self) -> usize {
+        self.first.degree().max(self.second.degree())
+    }
+
+    /// P and Q, or B and A, as polynomials in λ − σ.
+    pub(super) fn polynomials(&self) -> [&Polynomial; 2] {
+        [&self.first, &self.second]
+    }
+
+    /// The factors in F of |p|², of 2 Re(p q*) and of |q|², p and q being those of
+    /// [`Shifted::polynomials`].
+    pub(super) fn factors(&self) -> [Rounded; 3] {
+        let number = |value: f64| Rounded { value, error: 0.0 };
+        let kappa = self.decay.kappa;
+        match self.memory {
+            None if self.on_axis => [1.0, 0.0, -1.0].map(number),
+            None => [number(1.0), number(0.0), kappa.times(kappa).scaled(-1.0)],
+            Some(memory) if self.on_axis => {
+                let own = number(1.0 + memory).plus_error(f64::EPSILON * memory.abs());
+                [own, number(-1.0), number(0.0)]
+            }
+            Some(memory) => {
+                let [outer, middle, lost] = self.off_axis(memory);
+                [outer, middle.scaled(-1.0), lost]
+            }
+        }
+    }
+
     /// The argument α of −P Q* at σ + iω and a bound on its error, `omega` being known to within
-    /// `error`: none where nothing is known of it.
+    /// `error`: none where nothing is known of it. An angle with an error above `enough` is worth a
+    /// slower evaluation.
     ///
     /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
-    pub(super) fn phase(&self, omega: f64, error: f64) -> Option<Angle> {
+    #[inline(always)]
+    pub(super) fn phase(&self, omega: f64, error: f64, enough: f64) -> Option<Angle> {
         let first = self.first.on_axis(omega, error);
         let second = self.second.on_axis(omega, error);
+        let angle = self.angle(first, second);
+        match angle {
+            Some(angle) if angle.error <= enough => Some(angle),
+            _ => self.phase_exactly(omega, error).or(angle),
+        }
+    }
+
+    /// As [`Shifted::phase`], as narrow as the errors of the coefficients allow.
+    #[cold]
+    fn phase_exactly(&self, omega: f64, error: f64) -> Option<Angle> {
+        let [first, second] = self
+            .polynomials()
+            .map(|of| of.on_axis_exactly(omega, error));
+        self.angle(first, second)
+    }
+
+    #[inline(always)]
+    fn angle(&self, first: At, second: At) -> Option<Angle> {
         match self.memory {
             Some(memory) => Angle::of_feedback(first, second, memory),
             None => Angle::of_pair(first, second),
         }
+    }
+
+    /// Whether P and Q may both vanish at iω, `omega` being known to within `error`.
+    pub(super) fn may_vanish(&self, omega: f64, error: f64) -> bool {
+        let values = self.polynomials();
+        let at = values.map(|of| of.on_axis_exactly(omega, error));
+        at.iter().all(|at| norm(at.value) <= at.error)
     }
 }

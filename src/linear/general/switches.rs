@@ -3,10 +3,15 @@
 //! Each zero comes with a bound on its error. Zeros that rounding does not tell apart come as one,
 //! which counts by the change of sign of F across all of them.
 
+use super::factored::Factored;
 use super::isolate::{Enclosed, PositiveZeros};
 use super::polynomial::{MOST_DEGREE, Polynomial};
+use super::shifted::Shifted;
 use super::zeros::{Set, Zeros};
 use crate::model::elementary::pow;
+
+/// A relative error of x that is not worth a slower way.
+const ENOUGH: f64 = 1e-7;
 
 /// A positive zero of F, or several that cannot be told apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,14 +47,14 @@ pub(super) struct NearZero {
 }
 
 impl Switches {
-    /// Finds the positive zeros of the polynomial `f` in x = ω². F(0) is taken for 0 exactly where
-    /// it may be 0.
+    /// Finds the positive zeros of the polynomial `f` in x = ω², which is F on `line` if that is
+    /// given. F(0) is taken for 0 exactly where it may be 0.
     ///
     /// Returns false, and leaves nothing known, where the highest coefficient may be 0.
-    pub(super) fn find(&mut self, f: &Polynomial) -> bool {
+    pub(super) fn find(&mut self, f: &Polynomial, line: Option<&Shifted>) -> bool {
         let Self { list, .. } = self;
         list.clear();
-        let found = each_switch(f, |switch| list.push(switch));
+        let found = each_switch(f, line, |switch| list.push(switch));
         self.open_below = found.map_or(0.0, |near| near.open_below);
         self.at_zero = found.and_then(|near| near.sign);
         found.is_some()
@@ -64,29 +69,53 @@ impl Switches {
     }
 }
 
-/// Visits the switches of the polynomial `f` in x = ω², by falling frequency. F(0) is taken for 0
-/// exactly where it may be 0. None, with no switch visited, where the highest coefficient may be 0.
+/// Visits the switches of the polynomial `f` in x = ω², by falling frequency. Where `f` is F on
+/// `line`, zeros that its coefficients do not tell apart are found from P and Q themselves. F(0) is
+/// taken for 0 exactly where it may be 0. None, with no switch visited, where the highest
+/// coefficient may be 0.
 #[inline]
-pub(super) fn each_switch(f: &Polynomial, mut visit: impl FnMut(Switch)) -> Option<NearZero> {
+pub(super) fn each_switch(
+    f: &Polynomial,
+    line: Option<&Shifted>,
+    mut visit: impl FnMut(Switch),
+) -> Option<NearZero> {
     if !f.leading().decided() {
         return None;
     }
     if f.coefficient(0).decided() || f.degree() == 0 {
-        return Some(switches_of(f, 0.0, &mut visit));
+        return Some(switches_of(f, line, 0.0, &mut visit));
     }
     // A zero at 0 itself, or so near that nothing tells it from there.
     Some(switches_of(
         &f.divided_by_variable(),
+        None,
         near_zero(f),
         &mut visit,
     ))
 }
 
 #[inline]
-fn switches_of(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
-    let Some(zeros) = PositiveZeros::of(f) else {
-        return by_discs(f, open_below, visit);
+fn switches_of(
+    f: &Polynomial,
+    line: Option<&Shifted>,
+    open_below: f64,
+    visit: &mut impl FnMut(Switch),
+) -> NearZero {
+    let known = PositiveZeros::of(f);
+    let Some(zeros) = known.as_ref().filter(|zeros| precise(zeros)) else {
+        return otherwise(f, line, known.as_ref(), open_below, visit);
     };
+    by_isolation(f, zeros, open_below, visit)
+}
+
+/// Visits the switches from isolated zeros of `f`.
+#[inline(always)]
+fn by_isolation(
+    f: &Polynomial,
+    zeros: &PositiveZeros,
+    open_below: f64,
+    visit: &mut impl FnMut(Switch),
+) -> NearZero {
     let mut positive = f.leading().value > 0.0;
     for Enclosed { centre, radius } in zeros.all() {
         let range = (centre - radius, centre + radius);
@@ -99,10 +128,39 @@ fn switches_of(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) 
     }
 }
 
-/// Visits the switches from all zeros of `f`: zeros that are not apart count as one.
+/// Visits the switches where the zeros of `f` are not `known` well, or not at all.
 #[cold]
-fn by_discs(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
-    let zeros = Zeros::of(f);
+fn otherwise(
+    f: &Polynomial,
+    line: Option<&Shifted>,
+    known: Option<&PositiveZeros>,
+    open_below: f64,
+    visit: &mut impl FnMut(Switch),
+) -> NearZero {
+    // Without its highest coefficient F is not what P and Q give.
+    if let Some(line) = line.filter(|line| line.degree() == f.degree()) {
+        return by_discs(f, &Factored::new(line).zeros(f), open_below, visit);
+    }
+    match known {
+        Some(zeros) => by_isolation(f, zeros, open_below, visit),
+        None => by_discs(f, &Zeros::of(f), open_below, visit),
+    }
+}
+
+/// Whether all zeros are known so well that nothing is gained by a slower way.
+#[inline]
+fn precise(zeros: &PositiveZeros) -> bool {
+    let mut all = zeros.all().iter();
+    all.all(|zero| zero.radius <= ENOUGH * zero.centre)
+}
+
+/// Visits the switches from all `zeros` of `f`: those that are not apart count as one.
+fn by_discs(
+    f: &Polynomial,
+    zeros: &Zeros,
+    open_below: f64,
+    visit: &mut impl FnMut(Switch),
+) -> NearZero {
     let mut sets: [Option<(f64, f64, Set)>; MOST_DEGREE] = [None; MOST_DEGREE];
     let mut count = 0;
     for set in zeros.sets() {

@@ -319,8 +319,12 @@ impl System {
         }
     }
 
-    /// Whether P and Q have a zero near iω in common, both within their errors on the axis.
-    pub(super) fn has_common_zero(&self, omega: f64) -> bool {
+    /// Whether P and Q have a zero near iω in common, both within their errors on the axis; `omega`
+    /// is known to within `error`.
+    pub(super) fn has_common_zero(&self, omega: f64, error: f64) -> bool {
+        if !self.on_axis().may_vanish(omega, error) {
+            return false;
+        }
         let on_axis = |polynomial: &Polynomial| {
             let zeros = Zeros::of(polynomial);
             let near = zeros.discs().iter().copied().filter(|disc| {

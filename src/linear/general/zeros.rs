@@ -53,23 +53,47 @@ impl Zeros {
     /// The zeros of `of`, whose highest coefficient is certain to differ from 0.
     #[must_use]
     pub fn of(of: &Polynomial) -> Self {
-        let n = of.degree();
+        let mut at = [Complex64::ZERO; MOST_DEGREE];
+        let at = &mut at[..of.degree()];
+        Self::approximate(of, at);
+        Self::enclosed(at, |at, i| radius(of, at, i))
+    }
+
+    /// Discs about the zeros nearly at `at`, made symmetric; `radius` is that of a disc by its
+    /// number, by (1).
+    pub(super) fn enclosed(
+        at: &mut [Complex64],
+        radius: impl Fn(&[Complex64], usize) -> f64,
+    ) -> Self {
+        make_symmetric(at);
         let mut zeros = Self {
             discs: [NOWHERE; MOST_DEGREE],
             sets: [0; MOST_DEGREE],
-            count: n,
+            count: at.len(),
         };
-        let mut at = [Complex64::ZERO; MOST_DEGREE];
-        approximate(of, &mut at[..n]);
-        make_symmetric(&mut at[..n]);
-        for i in 0..n {
-            zeros.discs[i] = Disc {
+        for (i, disc) in zeros.discs[..at.len()].iter_mut().enumerate() {
+            *disc = Disc {
                 centre: at[i],
-                radius: radius(of, &at[..n], i),
+                radius: radius(at, i),
             };
         }
         zeros.connect();
         zeros
+    }
+
+    /// These zeros times a power of two.
+    pub(super) fn scaled(mut self, by: f64) -> Self {
+        for disc in &mut self.discs[..self.count] {
+            disc.centre *= by;
+            disc.radius *= by;
+        }
+        self
+    }
+
+    /// Approximate zeros of `of` by Aberth's iteration from the circles of the Newton polygon.
+    pub(super) fn approximate(of: &Polynomial, at: &mut [Complex64]) {
+        start(of, at);
+        iterate(of, at);
     }
 
     /// The discs.
@@ -255,9 +279,8 @@ fn radius(of: &Polynomial, at: &[Complex64], i: usize) -> f64 {
     }
 }
 
-/// Aberth's iteration from the circles of the Newton polygon.
-fn approximate(of: &Polynomial, at: &mut [Complex64]) {
-    start(of, at);
+/// Aberth's iteration.
+fn iterate(of: &Polynomial, at: &mut [Complex64]) {
     let limit = 0.25 * rounding(of);
     let mut settled = [false; MOST_DEGREE];
     for _ in 0..MOST_SWEEPS {

@@ -153,6 +153,12 @@ impl GeneralColumns {
         }
         let counter = RootCounter::new(line.system).bounded().heeding(line.stop);
         self.find_accumulations(line, &counter, known);
+        // A loop with known gains is dimensionless anyway.
+        let unit = match line.of_loop {
+            Some(_) => 1.0,
+            None => line.system.time_unit(),
+        };
+        let scaled = (unit != 1.0).then(|| RootCounter::new(&line.system.in_unit(unit)));
         let mut begin = 0;
         while begin < known {
             let kind = self.no_rightmost[begin];
@@ -165,9 +171,10 @@ impl GeneralColumns {
                 self.fill_accumulations(line, run, buffers);
             } else {
                 let part = Line {
-                    equation: &counter,
+                    equation: scaled.as_ref().unwrap_or(&counter),
                     of_loop: line.of_loop,
-                    time_unit: line.time_unit,
+                    time_unit: line.time_unit * unit,
+                    unit,
                     per_parameter: line.per_parameter,
                     delays: &line.delays.values()[run.clone()],
                     first: line.first + run.start,

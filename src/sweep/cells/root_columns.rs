@@ -6,6 +6,7 @@ use super::buffers::Column;
 use super::line::Places;
 use crate::linear::equation::Equation;
 use crate::linear::general::RootCounter;
+use crate::linear::general::rightmost::scaled_margin;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
@@ -56,8 +57,10 @@ impl<'l> Moving for &'l RootCounter {
 pub(super) struct Line<'a, E: Moving> {
     pub equation: E,
     pub of_loop: E::Loop,
-    /// √(M/κ).
+    /// The unit of time of the equation.
     pub time_unit: f64,
+    /// That unit in the one to which margins refer, √(M/κ) or a system's own.
+    pub unit: f64,
     /// The derivative of each group with respect to its parameter: b per μ_K′, a_v per α_v, a_n
     /// per α_N.
     pub per_parameter: Groups,
@@ -120,7 +123,8 @@ impl RootColumns {
                 f64::NAN
             };
             for column in columns.iter_mut() {
-                let value = value(column.field, &cell, &slopes, line.time_unit, beyond);
+                let units = (line.time_unit, line.unit);
+                let value = value(column.field, &cell, &slopes, units, beyond);
                 if let Some(value) = value {
                     column.cells[places.of(i)] = value;
                 }
@@ -137,7 +141,13 @@ impl RootColumns {
 ///
 /// NaN where nothing converged. A root after the last one has the real part `beyond`.
 #[inline]
-fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64, beyond: f64) -> Option<f64> {
+fn value(
+    field: Field,
+    cell: &Cell,
+    slopes: &[f64; 4],
+    (time_unit, unit): (f64, f64),
+    beyond: f64,
+) -> Option<f64> {
     let converged = !cell.roots.is_empty();
     let real_part = |rank: usize| match cell.roots.get(rank) {
         Some(root) => root.lambda.re / time_unit,
@@ -156,7 +166,10 @@ fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64, beyond: f
         OfRoots::RelaxationTime if !converged => f64::NAN,
         OfRoots::RelaxationTime => relaxation_time(real_part(0)),
         OfRoots::Derivative(slope) => slopes[slope as usize],
-        OfRoots::CertificateMargin => cell.margin,
+        OfRoots::CertificateMargin => match cell.roots.first() {
+            Some(root) => scaled_margin(cell.margin, root.lambda.re, 1.0 / unit),
+            None => cell.margin,
+        },
     })
 }
 

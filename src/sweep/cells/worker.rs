@@ -337,6 +337,7 @@ impl<'p> Worker<'p> {
             equation: groups,
             of_loop: (),
             time_unit,
+            unit: 1.0,
             per_parameter: self.lines.groups_per_parameter(),
             delays: self.delays.values(),
             first: self.delay_range.start,

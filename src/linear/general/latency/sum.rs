@@ -46,7 +46,7 @@ impl Sum {
         switches: &mut Switches,
         arguments: impl Fn(f64) -> [f64; 2],
     ) -> Option<Self> {
-        if !switches.find(difference) {
+        if !switches.find(difference, None) {
             return None;
         }
         let at_zero = switches.at_zero;
