@@ -7,7 +7,6 @@
 //! - [`sliding`]: linear stability of sliding
 //! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
-//! - [`stop`]: a flag that ends motions, from below
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
 //! - `friction_series`: the friction force of each law as a polynomial in time
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off

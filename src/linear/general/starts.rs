@@ -83,7 +83,8 @@ fn on_line_of_delays(
 }
 
 /// Where the number of unstable roots changes along a line across the window; `at` gives its points
-/// in `steps` steps. An error where it meets more curves than can be traced, each `at_most` so often.
+/// in `steps` steps. An error where it meets more curves than can be traced, each `at_most` so
+/// often.
 fn by_counts(
     plane: &SystemPlane,
     across: Across,

@@ -137,8 +137,8 @@ pub(crate) struct Start {
 impl Wave {
     /// Tells `found` the positive zeros in the window by rising frequency, each to `precision`,
     /// relative, or to rounding where that is 0; f must be positive beyond it. f(0) is taken for 0
-    /// where it may be 0. `found` ends the search by returning false. `left` is how many steps may be
-    /// taken, less by those that were.
+    /// where it may be 0. `found` ends the search by returning false. `left` is how many steps may
+    /// be taken, less by those that were.
     ///
     /// # Errors
     /// When there are too many, or `found` ended it.
