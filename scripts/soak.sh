@@ -48,6 +48,7 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_CASES=10000 tests --test general_latency_random
     SLIPMAP_CASES=100000 tests --test general_random
     SLIPMAP_CASES=2000 tests --test chains
+    SLIPMAP_CASES=100000 tests --test near_resonance
     SLIPMAP_CASES=1000 tests --test best_general
 done
 say "$round rounds"

@@ -30,7 +30,8 @@ pub struct Stability {
     pub n_unstable: Option<u64>,
     /// Whether sliding is stable.
     pub stable: bool,
-    /// Whether that is within rounding of a boundary.
+    /// Whether that is within rounding of a boundary, or the rightmost roots say otherwise than the
+    /// count.
     pub marginal: bool,
     /// Why the point is special: `root-at-origin`, `root-on-axis`, `infinite`, `neutral-limit`,
     /// `no-rightmost-root`, `degree-unknown` or `refused`; null where it is not.
@@ -155,7 +156,31 @@ impl Stability {
         if !stop.is_set() {
             stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
         }
+        if stability.disputed(time_unit) {
+            (stability.marginal, stability.stable) = (true, false);
+        }
         stability
+    }
+
+    /// Whether the rightmost roots say otherwise than the count: one is unstable though none is
+    /// counted, or none is though some are counted.
+    fn disputed(&self, time_unit: f64) -> bool {
+        let Spectrum {
+            abscissa,
+            certificate_margin,
+            certified_line,
+            ..
+        } = &self.spectrum;
+        let (Some(n), Some(abscissa)) = (self.n_unstable, *abscissa) else {
+            return false;
+        };
+        let none_right = match self.reason == Some(Reason::NoRightmostRoot.name()) {
+            true => abscissa < 0.0,
+            false => certified_line.is_some_and(|line| line <= 0.0),
+        };
+        let unit = abscissa.abs().max(1.0 / time_unit);
+        let some_right = certificate_margin.is_some_and(|margin| abscissa > margin * unit);
+        if n == 0 { some_right } else { none_right }
     }
 
     fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: Wanted) -> Self {

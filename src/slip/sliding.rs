@@ -1,6 +1,6 @@
 //! Linear stability of sliding under the feedback of a motion.
 
-use crate::linear::general::{DelayLine, Polynomial, RootCounter, Spectrum, System};
+use crate::linear::general::{DelayLine, Polynomial, RootCounter, Source, Spectrum, System};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
 use crate::model::Groups;
@@ -63,7 +63,11 @@ impl Sliding {
             .plus(&lambda, b)
             .plus(&Polynomial::constant(1.0, 0.0), 1.0);
         let gain = number(a_n + a_v * b).plus(&lambda, a_v);
-        Some(System::feedback(open, gain, self.memory, self.latency))
+        let source = Source {
+            groups: self.groups,
+            lags: [0.0; 3],
+        };
+        Some(System::feedback(open, gain, self.memory, self.latency).known_by(source))
     }
 }
 

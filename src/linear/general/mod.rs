@@ -12,6 +12,7 @@
 //! - `exact`: D and P on the axis with twice the digits
 //! - `rightmost`: the rightmost roots, or where roots accumulate
 //! - `line`: all delays of a setting: crossings and counts
+//! - `zero_delay`: the count as the delay goes to 0
 //! - `count`: the count at one delay
 //! - `row`: counts and margins at many delays
 //! - `stable`: the delays at which it is stable
@@ -25,6 +26,7 @@
 //! - `isolate`: positive zeros of F that are simple and apart, by Descartes' rule on halved
 //!   intervals
 //! - `parts`: what a system is made of: its feedback form, e^(−στ), angles with their errors
+//! - `precise`: crossings that rounding blurs, with more digits
 //! - `products`: products of numbers with bounds on their errors, sums of them, |P(iω)|²
 //! - `routh`: zeros right of the imaginary axis by Routh's array
 //! - `shifted`: P and Q on any vertical line, F = |P|² − |κQ|² there, and the argument of −P Q*
@@ -42,6 +44,7 @@ pub mod line;
 mod parts;
 pub mod plane;
 pub mod polynomial;
+mod precise;
 mod products;
 pub mod reason;
 pub mod right_of;
@@ -56,12 +59,14 @@ mod switches;
 pub mod system;
 mod turning;
 mod unit;
+mod zero_delay;
 pub mod zeros;
 
 pub use latency::Form;
 pub use line::DelayLine;
 pub use plane::{Setting, SystemPlane};
 pub use polynomial::Polynomial;
+pub use precise::source::Source;
 pub use reason::Reason;
 pub use right_of::RootCounter;
 pub use rightmost::Spectrum;

@@ -109,7 +109,7 @@ impl Angle {
     }
 
     /// The argument of `re` + i `im`, each with its error; none where the point may be the origin.
-    fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
+    pub(super) fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
         let size = (re * re + im * im).sqrt();
         if re_error + im_error >= 0.5 * size {
             return None;

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::parts::{Decay, Feedback, late};
 use super::polynomial::{DegreeTooLarge, Polynomial};
+use super::precise::source::Source;
 use super::reason::Reason;
 use super::shifted::Shifted;
 use super::zeros::{Disc, Zeros};
@@ -19,6 +20,7 @@ pub struct System {
     /// Q.
     pub(super) q: Polynomial,
     pub(super) feedback: Option<Feedback>,
+    pub(super) source: Option<Source>,
     class: Class,
 }
 
@@ -93,6 +95,15 @@ impl System {
         Self::classified(p, q, Some(feedback))
     }
 
+    /// This system, the B and A of which come from the numbers of `source`: what rounding of their
+    /// coefficients loses is then taken from there.
+    #[inline]
+    #[must_use]
+    pub fn known_by(mut self, source: Source) -> Self {
+        self.source = Some(source);
+        self
+    }
+
     /// The system of the coefficients of P and Q, the constants first.
     ///
     /// # Errors
@@ -107,6 +118,7 @@ impl System {
             p,
             q,
             feedback,
+            source: None,
             class: Class::Retarded,
         };
         system.class = system.find_class();

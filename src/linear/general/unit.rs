@@ -66,10 +66,13 @@ impl Polynomial {
 impl System {
     /// The unit of time, a power of two, in which the first and the last coefficient of P, or of
     /// the open loop, are about as large as one another; 1 where frequencies are of the order of 1
-    /// anyway.
+    /// anyway, and where the numbers are known that the system comes from, which have no unit.
     #[inline]
     #[must_use]
     pub fn time_unit(&self) -> f64 {
+        if self.source.is_some() {
+            return 1.0;
+        }
         let feedback = self.feedback.as_ref();
         feedback.map_or(&self.p, |of| &of.open).time_unit()
     }

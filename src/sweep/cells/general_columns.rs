@@ -9,7 +9,7 @@ use crate::linear::MarginalTolerance;
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
 use crate::linear::general::{Class, DelayLine, Reason, RootCounter, System};
 use crate::linear::row::Delays;
-use crate::linear::status::{CERTIFIED, MARGINAL, NOT_CONVERGED};
+use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
@@ -217,8 +217,13 @@ impl GeneralColumns {
                 OfRoots::CertificateMargin => beside - abscissa,
                 OfRoots::RealPart(_) | OfRoots::Frequency(_) | OfRoots::Derivative(_) => f64::NAN,
             });
-            if self.counts[i] == 0 && self.status[i] & MARGINAL == 0 {
-                self.status[i] |= CERTIFIED;
+            // The line lies left of the imaginary axis: no root is unstable.
+            if self.status[i] & MARGINAL == 0 {
+                self.status[i] |= if self.counts[i] == 0 {
+                    CERTIFIED
+                } else {
+                    DISAGREE
+                };
             }
         }
     }

@@ -18,7 +18,7 @@ use super::parameter::Parameter;
 use super::setting::Setting;
 use super::system::Evaluation;
 use crate::linear::characteristic::one_minus_exp;
-use crate::linear::general::{Polynomial, System};
+use crate::linear::general::{Polynomial, Source, System};
 use crate::model::{Groups, ModelError, StateGroups};
 
 /// The linear model of a setting, dimensionless.
@@ -55,6 +55,8 @@ struct Friction {
     load: Polynomial,
     /// V₀: the effect of a change of the pulling velocity, and its derivative.
     velocity: [Polynomial; 2],
+    /// b of the letter's friction.
+    slope: Option<f64>,
 }
 
 /// A feedback loop, (2).
@@ -66,6 +68,10 @@ pub struct FeedbackLoop {
     load: Polynomial,
     /// V₀ L_a, and its derivative.
     velocity: [Polynomial; 2],
+    /// b of the letter's friction.
+    slope: Option<f64>,
+    /// T_a, T_v and T_s.
+    lags: [f64; 3],
     a_n: f64,
     a_v: f64,
     memory: f64,
@@ -121,6 +127,7 @@ impl Friction {
             ],
             load: number(1.0).plus(&times(&kept, &state), 1.0),
             velocity: [effect.plus(&moving, 1.0), Polynomial::ZERO],
+            slope: None,
         }
     }
 
@@ -130,6 +137,7 @@ impl Friction {
             open: [polynomial(&[1.0, b, 1.0]), polynomial(&[0.0, 1.0])],
             load: polynomial(&[1.0]),
             velocity: [polynomial(&[b, 1.0]), polynomial(&[1.0])],
+            slope: Some(b),
         }
     }
 }
@@ -138,11 +146,13 @@ impl FeedbackLoop {
     /// A loop with lags T_a, T_v and T_s; gains, memory and latency are still 0.
     fn new(friction: Friction, lags: [f64; 3]) -> Self {
         let [of_load, of_velocity, of_sensor] = lags.map(|time| polynomial(&[1.0, time]));
-        let lags = times(&times(&of_load, &of_velocity), &of_sensor);
+        let all = times(&times(&of_load, &of_velocity), &of_sensor);
         Self {
-            open: friction.open.map(|open| times(&open, &lags)),
+            open: friction.open.map(|open| times(&open, &all)),
             load: times(&friction.load, &of_velocity),
             velocity: friction.velocity.map(|velocity| times(&velocity, &of_load)),
+            slope: friction.slope,
+            lags,
             a_n: 0.0,
             a_v: 0.0,
             memory: 0.0,
@@ -176,7 +186,14 @@ impl FeedbackLoop {
     pub fn system(&self) -> System {
         let load = Polynomial::ZERO.plus(&self.load, self.a_n);
         let gain = load.plus(&self.velocity[0], self.a_v);
-        System::feedback(self.open[0], gain, self.memory, self.latency)
+        let system = System::feedback(self.open[0], gain, self.memory, self.latency);
+        match self.slope {
+            Some(b) => system.known_by(Source {
+                groups: Groups::new(b, self.a_v, self.a_n),
+                lags: self.lags,
+            }),
+            None => system,
+        }
     }
 
     /// Derivatives of D at λ; `difference` is 1 − E.

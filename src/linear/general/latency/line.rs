@@ -8,6 +8,7 @@
 //! n(0) is the count without latency at the delay τ.
 
 use super::super::line::DelayLine;
+use super::super::precise::resolve::Resolver;
 use super::super::reason::Reason;
 use super::super::right_of::RootCounter;
 use super::super::switches::Switches;
@@ -52,10 +53,10 @@ impl DelayLine {
             // The latency does not matter.
             self.always_marginal = start.marginal;
         } else if !self.uncounted {
-            self.find_late_crossings(&late, tau);
+            let settled = self.find_late_crossings(&late, tau);
             if open {
                 self.always_marginal = true;
-            } else if start.marginal && !self.always_marginal {
+            } else if (start.marginal || !settled) && !self.always_marginal {
                 let counter = RootCounter::new(&late);
                 self.start_by_count(counter.late_unstable(Form::Latency, tau));
             }
@@ -63,7 +64,8 @@ impl DelayLine {
         true
     }
 
-    fn find_late_crossings(&mut self, late: &System, tau: f64) {
+    /// Finds the crossings; false where the phase of one may be 0 as well as 2π.
+    fn find_late_crossings(&mut self, late: &System, tau: f64) -> bool {
         let on_line = late.late().and_then(|f| OnLine::new(f, tau, 0.0));
         let mut switches = Switches::default();
         let found = on_line.as_ref().is_some_and(|on_line| {
@@ -74,15 +76,17 @@ impl DelayLine {
             // Too many to be listed: nothing is said but what holds without latency.
             self.always_marginal = true;
             self.open_from = 0.0;
-            return;
+            return true;
         };
         if self.reason != Some(Reason::RootAtOrigin) {
             self.opens_below(switches.open_below);
         }
+        let (mut resolver, mut settled) = (Resolver::of_latencies(late, tau), true);
         for switch in &switches.list {
             let phase = on_line.phase(Form::Latency, switch.omega, switch.error);
-            self.add(switch, phase);
+            settled &= self.add_resolved(&mut resolver, switch, phase);
         }
+        settled
     }
 
     /// The first latency at which the number of unstable roots changes along a line of latencies

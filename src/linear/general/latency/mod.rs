@@ -63,7 +63,9 @@ impl System {
         let Feedback {
             open, gain, memory, ..
         } = self.feedback?;
-        Some(Self::feedback(open, gain, memory, latency))
+        let mut late = Self::feedback(open, gain, memory, latency);
+        late.source = self.source;
+        Some(late)
     }
 }
 

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use crate::linear::MarginalTolerance;
 use crate::linear::characteristic::one_minus_exp;
-use crate::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, System};
+use crate::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, Source, System};
 use crate::linear::stable_delays::StableInterval;
 use crate::model::Groups;
 use crate::model::elementary::ln;
@@ -73,7 +73,8 @@ impl Beyond {
     #[must_use]
     pub fn system(&self, groups: Groups) -> System {
         let [open, gain] = self.polynomials(groups);
-        System::feedback(open, gain, self.memory, self.latency)
+        let lags = [self.load_lag, self.velocity_lag, self.sensor_lag];
+        System::feedback(open, gain, self.memory, self.latency).known_by(Source { groups, lags })
     }
 
     /// Whether all roots are left of Re λ = −`decay` at the delay `tau`; none where one is on that

@@ -1,0 +1,316 @@
+//! Nearly flat friction and weak feedback on oscillators with little damping: crossings that lie
+//! within rounding of degenerate ones. Against a table computed with 90 digits by mpmath, and
+//! against crossings in the distance from the resonance, by chance. `SLIPMAP_CASES` says how many.
+
+#[path = "common/chance.rs"]
+mod chance;
+#[path = "common/general_rows.rs"]
+mod general_rows;
+#[path = "common/near_resonance.rs"]
+mod near_resonance;
+
+use chance::{Chance, asked};
+use general_rows::{Row, rows};
+use near_resonance::{Line, Oscillator, Weak};
+use slipmap::explore::point::Point;
+use slipmap::explore::stability::Wanted;
+use slipmap::linear::general::{DelayLine, System};
+use slipmap::linear::{Count, Crossings, MarginalTolerance};
+use slipmap::sweep::input::system::SystemModel;
+use slipmap::sweep::{LinearModel, Parameter, Setting};
+
+/// Delays farther from a change than this, relative, are not marginal.
+const NEAR: f64 = 1e-8;
+
+fn cases(usual: u64) -> u64 {
+    asked("SLIPMAP_CASES", usual)
+}
+
+/// Checks a count against what is known of its line; whether it is decided.
+fn check(known: &Line, found: Count, tau: f64, place: &dyn std::fmt::Debug) -> bool {
+    let (n, distance) = known.count(tau);
+    let near = distance <= NEAR * tau.max(1.0);
+    if found.marginal {
+        assert!(
+            near,
+            "marginal {distance} from a change: {place:?} {tau}: {known:?}"
+        );
+        return false;
+    }
+    assert_eq!(found.n_unstable as i64, n, "{place:?} {tau}: {known:?}");
+    true
+}
+
+/// A delay: any, or one beside a crossing.
+fn delay(chance: &mut Chance, known: &Line) -> f64 {
+    let tau = chance.log(0.03, 30.0);
+    let crossings = &known.crossings;
+    if crossings.is_empty() || chance.unit() < 0.7 {
+        return tau;
+    }
+    let of = crossings[chance.of(crossings.len())];
+    let turns = std::f64::consts::TAU * chance.below(4) as f64;
+    (of.theta + turns) / of.omega + chance.between(-1.0, 1.0) * chance.log(1e-7, 1e-2)
+}
+
+fn setting(of: &Oscillator) -> Setting {
+    let mut setting = Setting::new(None);
+    let [load, velocity, sensor] = of.lags;
+    for (parameter, value) in [
+        (Parameter::MuPrime, of.b),
+        (Parameter::AlphaV, of.a_v),
+        (Parameter::AlphaN, of.a_n),
+        (Parameter::Memory, of.memory),
+        (Parameter::LoadLag, load),
+        (Parameter::VelocityLag, velocity),
+        (Parameter::SensorLag, sensor),
+        (Parameter::Latency, of.latency),
+    ] {
+        setting.set(parameter, value);
+    }
+    setting
+}
+
+/// The count of a setting by its line of delays.
+fn count(of: &Oscillator, tau: f64) -> Count {
+    let tolerance = MarginalTolerance::default();
+    match setting(of).linear().unwrap().0 {
+        LinearModel::Letter(groups) => Crossings::of(groups).count(tau, tolerance),
+        LinearModel::General(system) => DelayLine::of(&system).count(tau, tolerance),
+    }
+}
+
+fn gain(chance: &mut Chance) -> f64 {
+    let sign = if chance.below(2) == 0 { 1.0 } else { -1.0 };
+    sign * chance.log(1e-4, 1.0)
+}
+
+/// Nearly flat friction, 1e-30 < |b| < 1e-6, with what `beyond` asks for.
+fn flat(chance: &mut Chance, beyond: u64) -> Oscillator {
+    let sign = if chance.below(2) == 0 { 1.0 } else { -1.0 };
+    let b = sign * chance.log(1e-30, 1e-6);
+    let [a_v, a_n] = match chance.below(3) {
+        0 => [gain(chance), 0.0],
+        1 => [0.0, gain(chance)],
+        _ => [gain(chance), gain(chance)],
+    };
+    let mut lags = [0.0; 3];
+    if beyond & 2 != 0 {
+        let all = chance.below(7) + 1;
+        for (i, lag) in lags.iter_mut().enumerate() {
+            if all >> i & 1 == 1 {
+                *lag = chance.log(1e-4, 3.0);
+            }
+        }
+    }
+    Oscillator {
+        b,
+        a_v,
+        a_n,
+        memory: if beyond & 1 == 0 {
+            0.0
+        } else {
+            chance.between(-0.8, 0.8)
+        },
+        lags,
+        latency: if beyond & 4 == 0 {
+            0.0
+        } else {
+            chance.log(0.01, 5.0)
+        },
+    }
+}
+
+/// Nearly flat friction under the letter's control, with memory, lags and latency, and with all.
+#[test]
+fn nearly_flat_friction() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 31));
+    let (total, mut counted, mut open) = (cases(1000), 0, 0);
+    for number in 0..total {
+        let of = flat(&mut chance, number % 8);
+        let Some(known) = of.line() else {
+            open += 1;
+            continue;
+        };
+        let tau = delay(&mut chance, &known).abs();
+        counted += u64::from(check(&known, count(&of, tau), tau, &of));
+    }
+    println!("{total} cells: {counted} counted, {open} left out");
+    assert!(
+        counted > total * 97 / 100 && open <= total / 200,
+        "{counted} {open}"
+    );
+}
+
+/// Weak feedback, ε/k² of it lost in rounding: P = s² + 2ζω₀s + ω₀² and Q of the size of ζ.
+fn weak(chance: &mut Chance) -> [f64; 5] {
+    let k = chance.log(1e-9, 1e-2);
+    let of = |chance: &mut Chance| chance.between(-1.0, 1.0) * chance.log(0.01, 1.0);
+    let velocity = if chance.below(2) == 0 {
+        0.0
+    } else {
+        k * of(chance)
+    };
+    [
+        k * of(chance),
+        chance.log(0.2, 5.0),
+        k * of(chance),
+        velocity,
+        0.0,
+    ]
+}
+
+const WEAK: &str = r#"
+title = "weak feedback on an oscillator"
+P = "s^2 + 2*damping*s + stiffness"
+Q = "load + velocity*s"
+
+[parameters]
+damping = 1e-7
+stiffness = 1
+load = 1e-6
+velocity = 0
+"#;
+
+#[test]
+fn weak_feedback() {
+    let model: SystemModel = WEAK.parse().unwrap();
+    let mut at = model.defaults();
+    let mut chance = Chance(asked("SLIPMAP_SEED", 32));
+    let (total, mut counted, mut open) = (cases(2000), 0, 0);
+    for _ in 0..total {
+        let [damping, stiffness, load, velocity, _] = weak(&mut chance);
+        let of = Weak {
+            p: [stiffness, 2.0 * damping],
+            q: [load, velocity],
+        };
+        let Some(known) = of.line() else {
+            open += 1;
+            continue;
+        };
+        let tau = delay(&mut chance, &known).abs();
+        at.own = vec![damping, stiffness, load, velocity];
+        let system = model.at(&mut at).unwrap();
+        let found = DelayLine::of(&system).count(tau, MarginalTolerance::default());
+        counted += u64::from(check(&known, found, tau, &of));
+        let same = System::of_coefficients(&[of.p[0], of.p[1], 1.0], &of.q).unwrap();
+        let again = DelayLine::of(&same).count(tau, MarginalTolerance::default());
+        assert_eq!(again, found, "{of:?}");
+    }
+    println!("{total} cells: {counted} counted, {open} left out");
+    assert!(
+        counted > total * 97 / 100 && open <= total / 100,
+        "{counted} {open}"
+    );
+}
+
+/// Weak control by the letter's own closed form, and by the general way with a memory of next to
+/// nothing.
+#[test]
+fn weak_control_of_the_letter() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 33));
+    let (total, mut counted, mut open) = (cases(400), 0, 0);
+    for number in 0..total {
+        let k = chance.log(1e-9, 1e-2);
+        let mut of = || chance.between(-1.0, 1.0) * k;
+        let [b, a_v, a_n] = [of(), of(), of()];
+        let of = Oscillator {
+            b,
+            a_v,
+            a_n,
+            memory: if number % 2 == 0 { 0.0 } else { 1e-3 },
+            lags: [0.0; 3],
+            latency: 0.0,
+        };
+        let Some(known) = of.line() else {
+            open += 1;
+            continue;
+        };
+        let tau = delay(&mut chance, &known).abs();
+        counted += u64::from(check(&known, count(&of, tau), tau, &of));
+    }
+    println!("{total} cells: {counted} counted, {open} left out");
+    assert!(
+        counted > total * 97 / 100 && open <= total / 100,
+        "{counted} {open}"
+    );
+}
+
+fn of_row(row: &Row) -> Oscillator {
+    let number = |name: &str| row.or_zero(name);
+    Oscillator {
+        b: number("mu_prime"),
+        a_v: number("alpha_v"),
+        a_n: number("alpha_n"),
+        memory: number("memory"),
+        lags: ["load_lag", "velocity_lag", "sensor_lag"].map(number),
+        latency: number("latency"),
+    }
+}
+
+/// Everything that a point says of its line, against numbers of 90 digits.
+#[test]
+fn points_of_the_table() {
+    let table = include_str!("reference/nearly_flat.csv");
+    let mut certified = 0;
+    for row in rows("nearly_flat", table) {
+        let place = &row.place;
+        let mut setting = setting(&of_row(&row));
+        setting.set(Parameter::Tau, row.or_zero("tau"));
+        let wanted = Wanted {
+            roots: 1,
+            line: None,
+        };
+        let found = Point::at(&setting, wanted).unwrap().stability;
+        let n = row.number("n_unstable").map(|n| n as u64);
+        assert_eq!((found.n_unstable, found.marginal), (n, false), "{place}");
+        assert_eq!(
+            found.n_at_zero_delay.map(|n| n as f64),
+            row.number("n_at_zero_delay"),
+            "{place}"
+        );
+        let expected = row.intervals("stable_delays");
+        for (ends, (from, to)) in found.stable_delays.iter().zip(&expected) {
+            for (end, known) in [
+                (ends[0].unwrap_or(f64::NAN), *from),
+                (ends[1].unwrap_or(f64::INFINITY), *to),
+            ] {
+                let apart = (end - known).abs();
+                assert!(
+                    end == known || apart <= 1e-9 * known.max(1.0),
+                    "{place}: {end} {known}"
+                );
+            }
+        }
+        assert!(found.stable_delays.len() >= expected.len(), "{place}");
+        if found.spectrum.certified {
+            certified += 1;
+            let unstable = found.spectrum.abscissa.unwrap() > 0.0;
+            assert_eq!(unstable, found.n_unstable > Some(0), "{place}");
+        }
+    }
+    println!("{certified} certified");
+    assert!(certified > 150, "{certified}");
+}
+
+/// Weak feedback at given points; computed with mpmath.
+#[test]
+fn weak_feedback_at_given_points() {
+    let model: SystemModel = WEAK.parse().unwrap();
+    let line = |damping: f64, load: f64| {
+        let mut at = model.defaults();
+        at.own = vec![damping, 1.0, load, 0.0];
+        DelayLine::of(&model.at(&mut at).unwrap())
+    };
+    let near = |found: f64, known: f64| assert!((found - known).abs() < 1e-8, "{found} {known}");
+    let first = line(1e-7, 1e-6).stable_intervals().next().unwrap();
+    assert_eq!(first.from, 0.0);
+    near(first.to, 0.201_357_922);
+    let other = line(3e-8, 3e-7);
+    let count = other.count(1.1, MarginalTolerance::default());
+    assert_eq!((count.n_unstable, count.marginal), (2, false));
+    let mut stable = other.stable_intervals();
+    let [first, second] = [(); 2].map(|()| stable.next().unwrap());
+    near(first.to, 0.201_357_92);
+    near(second.from, 2.940_235_20);
+}
