@@ -93,7 +93,7 @@ fn busy(serving: &Serving) {
 fn ends(serving: &Serving, what: &str) {
     let gone = cpu(serving.child.id());
     std::thread::sleep(Duration::from_secs(3));
-    let took = cpu(serving.child.id()) - gone;
+    let took = cpu(serving.child.id()).saturating_sub(gone);
     assert!(took <= Duration::from_secs(1), "{what}: {took:?}");
     println!("after the client has gone: {took:?} of {what:.20}");
 }

@@ -179,12 +179,11 @@ impl Facts {
         rows.row("cells", grouped(self.cells))?;
         let (tiles, cells) = (grouped(self.tiles), grouped(self.cells_of_a_tile));
         rows.row("tiles", format!("{tiles} of {cells} cells"))?;
-        let boundaries = match &self.no_boundaries {
-            Some(why) => format!("none: {why}"),
-            None => {
-                let planes = counted(self.boundary_planes, "plane");
-                format!("in {planes} of {}", self.boundaries_of.join(" and "))
-            }
+        let boundaries = if let Some(why) = &self.no_boundaries {
+            format!("none: {why}")
+        } else {
+            let planes = counted(self.boundary_planes, "plane");
+            format!("in {planes} of {}", self.boundaries_of.join(" and "))
         };
         rows.row("boundaries", boundaries)?;
         if let Some(planes) = self.best_planes {
