@@ -139,7 +139,7 @@ fn names_that_a_map_has_already_are_refused_with_one_that_works() {
         taken += 1;
     }
     assert!(taken > 50, "{taken}");
-    for name in ["status", "n_unstable", "boundaries", "tau", "s", "sqrt"] {
+    for name in ["status", "n_unstable", "boundaries", "s", "sqrt"] {
         let folder = Folder::with(&[("sweep.toml", &sweep(name, "width"))]);
         for command in ["plan", "run"] {
             let output = folder.run(&[command, "sweep.toml"]);

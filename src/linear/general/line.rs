@@ -17,7 +17,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::isolate::MOST;
 use super::parts::Angle;
-use super::precise::resolve::{Resolver, blurred};
+use super::precise::resolve::{Resolver, blurred, is_not_0};
 use super::reason::Reason;
 use super::switches::{Switch, Switches, each_switch};
 use super::system::{Class, System};
@@ -215,8 +215,11 @@ impl DelayLine {
     ) -> bool {
         let blurred = blurred(switch, phase.as_ref());
         if blurred && let Some(resolved) = resolver.resolve(switch) {
-            for (switch, phase) in resolved.iter().flatten() {
-                self.add(switch, Some(*phase));
+            // Where only the coefficients are uncertain, P Q* itself may tell its argument better.
+            let own = phase.filter(|of| switch.simple && is_not_0(of, switch));
+            for (found, phase) in resolved.iter().flatten() {
+                let sharper = own.filter(|own| own.error < phase.error);
+                self.add(found, sharper.or(Some(*phase)));
             }
             return true;
         }

@@ -20,10 +20,14 @@ const LAST_STEP: f64 = 16.0 * UNIT;
 /// zero may be several, or the phase is uncertain, or it may be 0 as well as 2π.
 #[inline]
 pub(in super::super) fn blurred(switch: &Switch, phase: Option<&Angle>) -> bool {
-    let known = phase.is_some_and(|angle| {
-        angle.error <= BLURRED && angle.value.abs() > angle.error + 2.0 * switch.error
-    });
+    let known = phase.is_some_and(|of| of.error <= BLURRED && is_not_0(of, switch));
     !(known && switch.simple && switch.error <= BLURRED * switch.omega)
+}
+
+/// Whether the argument `phase` of −P Q* is known not to be 0 at the zero near `switch`.
+#[inline]
+pub(in super::super) fn is_not_0(phase: &Angle, switch: &Switch) -> bool {
+    phase.value.abs() > phase.error + 2.0 * switch.error
 }
 
 /// A crossing: its frequency, and the argument of −P Q* there.
