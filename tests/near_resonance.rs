@@ -9,12 +9,15 @@ mod general_rows;
 #[path = "common/near_resonance.rs"]
 mod near_resonance;
 
+use std::f64::consts::{PI, TAU};
+
 use chance::{Chance, asked};
 use general_rows::{Row, rows};
 use near_resonance::{Line, Oscillator, Weak};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::linear::general::{DelayLine, System};
+use slipmap::linear::stable_delays::StableInterval;
 use slipmap::linear::{Count, Crossings, MarginalTolerance};
 use slipmap::sweep::input::system::SystemModel;
 use slipmap::sweep::{LinearModel, Parameter, Setting};
@@ -69,6 +72,21 @@ fn setting(of: &Oscillator) -> Setting {
         setting.set(parameter, value);
     }
     setting
+}
+
+/// The first three intervals of stable delays of a setting.
+fn stable_delays(of: &Oscillator) -> Vec<[f64; 2]> {
+    let ends = |of: StableInterval| [of.from, of.to];
+    match setting(of).linear().unwrap().0 {
+        LinearModel::Letter(groups) => {
+            let crossings = Crossings::of(groups);
+            crossings.stable_delays().take(3).map(ends).collect()
+        }
+        LinearModel::General(system) => {
+            let line = DelayLine::of(&system);
+            line.stable_intervals().take(3).map(ends).collect()
+        }
+    }
 }
 
 /// The count of a setting by its line of delays.
@@ -314,4 +332,59 @@ fn weak_feedback_at_given_points() {
     let [first, second] = [(); 2].map(|()| stable.next().unwrap());
     near(first.to, 0.201_357_92);
     near(second.from, 2.940_235_20);
+}
+
+/// Without damping, b = 0, load control has closed forms. The crossing frequencies are 1, with
+/// e^(−iωτ) = 1, and that of 1 − ω² = 2a_n cos(ωδ)/(1 + R): without latency e^(−iωτ) is −1 there,
+/// and without memory −e^(2iωδ). Pairs go to the right at the larger one.
+#[test]
+fn undamped_oscillators_under_weak_load_control() {
+    let mut chance = Chance(20);
+    for _ in 0..cases(300) {
+        let a_n = chance.log(1e-15, 1e-3) * if chance.below(2) == 0 { 1.0 } else { -1.0 };
+        let [mut memory, mut latency] = [0.0; 2];
+        match chance.below(3) {
+            0 => memory = chance.between(-0.8, 0.8),
+            1 => latency = chance.log(1e-3, 1.5),
+            _ => {}
+        }
+        let of = Oscillator {
+            b: 0.0,
+            a_v: 0.0,
+            a_n,
+            memory,
+            lags: [0.0; 3],
+            latency,
+        };
+        let mut omega = 1.0_f64;
+        for _ in 0..50 {
+            omega = (1.0 - 2.0 * a_n * (omega * latency).cos() / (1.0 + memory)).sqrt();
+        }
+        let leaves = PI - 2.0 * omega * latency;
+        let expected = [0.0, 1.0, 2.0].map(|turn| {
+            let [one, other] = [TAU * turn, (leaves + TAU * turn) / omega];
+            if a_n > 0.0 {
+                [other, one + TAU]
+            } else {
+                [one, other]
+            }
+        });
+        for [from, to] in expected {
+            for (tau, n) in [(0.5 * (from + to), 0), (to + 0.3, 2)] {
+                let found = count(&of, tau);
+                assert_eq!(
+                    (found.n_unstable, found.marginal),
+                    (n, false),
+                    "{of:?} {tau}"
+                );
+            }
+        }
+        let found = stable_delays(&of);
+        assert_eq!(found.len(), 3, "{of:?}");
+        for (ends, [from, to]) in found.iter().zip(expected) {
+            for (end, known) in [(ends[0], from), (ends[1], to)] {
+                assert!((end - known).abs() <= 1e-8, "{of:?}: {end} {known}");
+            }
+        }
+    }
 }

@@ -9,6 +9,9 @@ use crate::linear::double::{Double, DoubleComplex, EXPONENTIAL, UNIT};
 use crate::linear::equation::Exact;
 use crate::model::elementary::norm;
 
+/// Up to here exponents of D are turned into exponentials with all their digits.
+const LARGEST_EXPONENT: f64 = 1000.0;
+
 impl Polynomial {
     /// The value at iω with twice the digits, `omega` being known to within `error`.
     pub(super) fn on_axis_exactly(&self, omega: f64, error: f64) -> At {
@@ -83,9 +86,10 @@ impl Jet {
 }
 
 impl System {
-    /// D at λ with twice the digits; none with latency.
+    /// D at λ with twice the digits; none with latency, and where the delay turns D by more than
+    /// the exponential is known for.
     pub(super) fn exact(&self, tau: f64, lambda: Complex64) -> Option<Exact> {
-        if self.late().is_some() {
+        if self.late().is_some() || tau * norm(lambda) >= LARGEST_EXPONENT {
             return None;
         }
         let [p, q] = match &self.feedback {

@@ -51,6 +51,8 @@ pub struct DelayLine {
     pub uncounted: bool,
     /// The unit of time; 1 for dimensionless delays.
     pub time_unit: f64,
+    /// How many frequencies were computed with many digits, which takes hundreds of times as long.
+    pub resolved: u32,
 }
 
 /// A real root passes 0, where another one rests at every delay.
@@ -214,14 +216,17 @@ impl DelayLine {
         phase: Option<Angle>,
     ) -> bool {
         let blurred = blurred(switch, phase.as_ref());
+        self.resolved += u32::from(blurred);
         if blurred && let Some(resolved) = resolver.resolve(switch) {
             // Where only the coefficients are uncertain, P Q* itself may tell its argument better.
             let own = phase.filter(|of| switch.simple && is_not_0(of, switch));
-            for (found, phase) in resolved.iter().flatten() {
-                let sharper = own.filter(|own| own.error < phase.error);
-                self.add(found, sharper.or(Some(*phase)));
+            let mut settled = true;
+            for found in resolved.iter().flatten() {
+                let sharper = own.filter(|own| own.error < found.phase.error);
+                settled &= found.decided || sharper.is_some();
+                self.add(&found.switch, sharper.or(Some(found.phase)));
             }
-            return true;
+            return settled;
         }
         let crossing = self.add(switch, phase);
         !(blurred && crossing.starts_at_zero())
@@ -234,11 +239,13 @@ impl DelayLine {
             -1 => Direction::Left,
             _ => Direction::Touch,
         };
-        let (theta, error) = match phase {
+        let (theta, error) = if let Some(angle) = phase {
             // θ = arg(−Q/P) = −arg(−P Q*).
-            Some(angle) => (turned(-angle.value), angle.error),
+            (turned(-angle.value), angle.error)
+        } else {
             // Nothing is known of the phase: every delay is marginal.
-            None => (PI, TAU),
+            self.always_marginal = true;
+            (PI, TAU)
         };
         let Switch {
             omega,

@@ -199,6 +199,17 @@ impl RootCounter {
         Self { stop, ..self }
     }
 
+    /// The counter of the same system with times in units of `unit`, a power of two; with the same
+    /// stop, and as bounded as this one.
+    #[must_use]
+    pub fn in_unit(&self, unit: f64) -> Self {
+        Self {
+            stop: self.stop.clone(),
+            budget: self.budget.clone(),
+            ..Self::new(&self.system.in_unit(unit))
+        }
+    }
+
     /// The number of roots with Re λ > `line` at the delay `tau` ≥ 0. Real roots count once, pairs
     /// twice.
     #[must_use]
@@ -362,6 +373,7 @@ impl RootCounter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::general::Polynomial;
 
     /// Right angles one way and back, in every order of signs: the sum is known without rounding.
     #[test]
@@ -375,5 +387,22 @@ mod tests {
                 assert!((turned.angle() - sum).abs() < 1e-12, "{pattern:b} {bit}");
             }
         }
+    }
+
+    /// In another unit of time, too, counts end with their bound and with the stop.
+    #[test]
+    fn bounds_and_stops_hold_in_every_unit() {
+        let open = Polynomial::new(&[1e8, 2e3, 1.0]).unwrap();
+        let gain = Polynomial::new(&[1e7]).unwrap();
+        let system = System::feedback(open, gain, 0.5, 1e-4);
+        let unit = system.time_unit();
+        assert_ne!(unit, 1.0);
+        let count = |counter: &RootCounter| counter.in_unit(unit).right_of(3e-4 / unit, 0.0);
+        let free = RootCounter::new(&system);
+        assert!(matches!(count(&free), RightOf::Roots(_)));
+        assert_eq!(count(&free.allowing(1)), RightOf::Undecided);
+        let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
+        let stopped = RootCounter::new(&system).heeding(&Stop::when(&stop));
+        assert_eq!(count(&stopped), RightOf::Undecided);
     }
 }

@@ -87,7 +87,7 @@ impl Spectrum {
         if unit == 1.0 {
             return Self::in_unit(counter, line, (tau, unit), wanted);
         }
-        let counter = RootCounter::new(&counter.system().in_unit(unit));
+        let counter = counter.in_unit(unit);
         let mut spectrum = Self::in_unit(&counter, line, (tau / unit, unit), wanted);
         spectrum.scale(1.0 / unit);
         spectrum

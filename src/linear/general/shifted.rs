@@ -164,8 +164,12 @@ impl Shifted {
             None if self.on_axis => [1.0, 0.0, -1.0].map(number),
             None => [number(1.0), number(0.0), kappa.times(kappa).scaled(-1.0)],
             Some(memory) if self.on_axis => {
-                let own = number(1.0 + memory).plus_error(f64::EPSILON * memory.abs());
-                [own, number(-1.0), number(0.0)]
+                let rounding = if memory == 0.0 { 0.0 } else { f64::EPSILON };
+                [
+                    number(1.0 + memory).plus_error(rounding),
+                    number(-1.0),
+                    number(0.0),
+                ]
             }
             Some(memory) => {
                 let [outer, middle, lost] = self.off_axis(memory);

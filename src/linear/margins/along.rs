@@ -27,7 +27,7 @@ pub fn delay(of: &impl AsCase) -> Limits {
     let Setting { groups, tau, decay } = case.setting;
     if decay == 0.0 {
         let interval = match &case.beyond {
-            Some(beyond) => beyond.stable_interval_at(groups, tau),
+            Some(beyond) => beyond.stable_interval_at(groups, tau).0,
             None => Crossings::of(groups).stable_interval_at(tau),
         };
         return interval.map_or(Limits::UNDECIDED, |found| Limits {

@@ -21,6 +21,8 @@ const STEPS_BEYOND: u32 = 12;
 const WORK_OF_CROSSINGS: u32 = 4;
 /// Finding the crossings of a setting beyond the letter takes as long as enclosing D so many times.
 const WORK_OF_CROSSINGS_BEYOND: u32 = 16;
+/// Computing a frequency with many digits takes as long as enclosing D so many times.
+const WORK_OF_DIGITS: u32 = 500;
 
 impl Surroundings<'_> {
     /// A setting that is not stable near `here`, or near a `candidate` for a zero of D (ω and
@@ -40,7 +42,7 @@ impl Surroundings<'_> {
                 Some(_) => WORK_OF_CROSSINGS_BEYOND,
                 None => WORK_OF_CROSSINGS,
             };
-            self.delay_lost(here)
+            self.delay_lost(here, work)
         });
         let nearer = |found: &Changes| largest(*found) < bound;
         let on_line = lost.flatten().filter(nearer).or_else(|| {
@@ -55,10 +57,14 @@ impl Surroundings<'_> {
 
     /// The given changes of gain and third parameter, with the least change of the delay at which
     /// sliding is not stable.
-    fn delay_lost(&self, [gain, _, third]: Changes) -> Option<Changes> {
+    fn delay_lost(&self, [gain, _, third]: Changes, work: &mut u32) -> Option<Changes> {
         let (groups, tau) = self.changed([gain, 0.0, third]);
         let interval = match &self.case.beyond {
-            Some(beyond) => beyond.stable_interval_at(groups, tau),
+            Some(beyond) => {
+                let (found, resolved) = beyond.stable_interval_at(groups, tau);
+                *work += WORK_OF_DIGITS * resolved;
+                found
+            }
             None => Crossings::of(groups).stable_interval_at(tau),
         };
         let change = match interval {

@@ -158,7 +158,7 @@ impl GeneralColumns {
             Some(_) => 1.0,
             None => line.system.time_unit(),
         };
-        let scaled = (unit != 1.0).then(|| RootCounter::new(&line.system.in_unit(unit)));
+        let scaled = (unit != 1.0).then(|| counter.in_unit(unit));
         let mut begin = 0;
         while begin < known {
             let kind = self.no_rightmost[begin];

@@ -30,8 +30,16 @@ pub(in super::super) fn is_not_0(phase: &Angle, switch: &Switch) -> bool {
     phase.value.abs() > phase.error + 2.0 * switch.error
 }
 
-/// A crossing: its frequency, and the argument of −P Q* there.
-pub(in super::super) type Resolved = (Switch, Angle);
+/// A crossing that was found with many digits.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Resolved {
+    /// Its frequency.
+    pub switch: Switch,
+    /// The argument of −P Q* there.
+    pub phase: Angle,
+    /// Whether the argument is known to be on one side of 0.
+    pub decided: bool,
+}
 
 /// Resolves the crossings of one line.
 pub(in super::super) struct Resolver<'s> {
@@ -206,32 +214,37 @@ impl Around<'_> {
         let at = self.on_axis.at(omega)?;
         let rises = if at.slope().value > 0.0 { 1 } else { -1 };
         let phase = phase(&at, radius).filter(|_| rises == sign)?;
-        Some((Self::switch_at(omega, radius, sign), phase))
+        Some(Self::resolved(omega, radius, sign, phase))
     }
 
     /// Two zeros that may be one, no farther than `apart` from the extremum of F.
     fn touch(&self, extremum: Number, at: &At, apart: f64) -> Option<Resolved> {
         let nearer = apart < self.switch.error;
         let phase = phase(at, apart).filter(|_| nearer)?;
-        Some((Self::switch_at(extremum, apart, 0), phase))
+        Some(Self::resolved(extremum, apart, 0, phase))
     }
 
-    fn switch_at(omega: Number, radius: f64, sign: i8) -> Switch {
+    fn resolved(omega: Number, radius: f64, sign: i8, (phase, decided): (Angle, bool)) -> Resolved {
         let omega = omega.value();
-        Switch {
+        let switch = Switch {
             omega,
             error: radius + f64::EPSILON * omega,
             sign,
             simple: sign != 0,
+        };
+        Resolved {
+            switch,
+            phase,
+            decided,
         }
     }
 }
 
-/// The argument of −P Q* where the frequency is known to within `moved`; none where it may be on
-/// either side of 0.
-fn phase(at: &At, moved: f64) -> Option<Angle> {
+/// The argument of −P Q* where the frequency is known to within `moved`, and whether it is known to
+/// be on one side of 0.
+fn phase(at: &At, moved: f64) -> Option<(Angle, bool)> {
     let [along, across] = at.turned(moved);
     let beyond = along.value < -along.error;
     let angle = Angle::of(along.value, -across.value, along.error, across.error)?;
-    (beyond || across.decided()).then_some(angle)
+    Some((angle, beyond || across.decided()))
 }

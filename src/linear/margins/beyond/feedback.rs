@@ -94,13 +94,15 @@ impl Beyond {
         }
     }
 
-    /// The interval of delays around `tau` in which sliding is stable; none where it is not.
+    /// The interval of delays around `tau` in which sliding is stable; none where it is not. And how
+    /// many frequencies took many digits.
     pub(in super::super) fn stable_interval_at(
         &self,
         groups: Groups,
         tau: f64,
-    ) -> Option<StableInterval> {
-        DelayLine::of(&self.system(groups)).stable_interval_at(tau)
+    ) -> (Option<StableInterval>, u32) {
+        let line = DelayLine::of(&self.system(groups));
+        (line.stable_interval_at(tau), line.resolved)
     }
 
     /// The delay at which infinitely many roots come to the line Re λ = −`decay`: ln(1/|R|)/σ.
