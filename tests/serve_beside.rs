@@ -41,9 +41,20 @@ fn slow_vc(n: u32) -> String {
     )
 }
 
-/// The text of a request for a chart with very many curves.
-fn curves(memory: f64, latency: f64) -> String {
-    PLANE.replace("12.0,", "1000.0,") + &format!("memory = {memory}\nlatency = {latency}\n")
+/// The text of a request for a chart of roots that accumulate, which takes many seconds.
+const ROOTS: &str = "fields = [\"abscissa\"]\n\
+    [axes]\nalpha_v = { from = -1.0, to = 0.2, points = 100 }\n\
+    tau = { from = 10.0, to = 1000.0, points = 100 }\n\
+    [fixed]\nmu_prime = -0.3\nmemory = 0.97\nlatency = 30\n";
+/// A chart of the plane of both gains, whose curves are walked for many seconds.
+const GAINS: &str = "boundaries = true\n\
+    [axes]\nalpha_v = { from = -1.0, to = 1.0, points = 200 }\n\
+    alpha_n = { from = -1.0, to = 1.0, points = 200 }\n\
+    [fixed]\nmu_prime = -0.3\ntau = 1000.0\nmemory = 0.97\nlatency = 30\n";
+
+/// The text of a request for a best setting where roots accumulate.
+fn best() -> String {
+    ROOTS.replace("fields = [\"abscissa\"]", "best = true")
 }
 
 /// The bytes of a request.
@@ -126,6 +137,24 @@ fn charts_do_not_wait_for_critical_velocities() {
     ends(&serving, "four vc");
 }
 
+/// Neither do charts of the letter wait for charts of roots beyond it, or of curves that are walked.
+#[test]
+fn charts_do_not_wait_for_slow_charts() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    for text in [ROOTS, GAINS] {
+        let mut slow = [(); 4].map(|()| asking(&serving, "chart", text));
+        busy(&serving);
+        let begun = Instant::now();
+        assert_eq!(serving.ask("chart", PLANE).status, 200);
+        let took = begun.elapsed();
+        assert!(slow.iter_mut().all(is_waited_for), "they take that long");
+        println!("a chart beside 4 slow ones: {took:?}");
+        // On a machine that does nothing else it is a tenth of this.
+        assert!(took <= Duration::from_secs(2), "{took:?}");
+    }
+}
+
 /// Whatever is computed ends when its client goes, on all threads.
 #[test]
 fn what_nobody_waits_for_ends() {
@@ -137,13 +166,15 @@ fn what_nobody_waits_for_ends() {
         drop(left);
         ends(&serving, what);
     }
-    // Memory and latency give a plane very many curves, each of them long.
-    for (memory, latency) in [(0.999999, 1000.0), (0.9, 2.0)] {
-        let text = curves(memory, latency);
-        let left = [(); 2].map(|()| asking(&serving, "chart", &text));
-        std::thread::sleep(Duration::from_secs(1));
+    for text in [GAINS, ROOTS, &best()] {
+        let mut left = [(); 2].map(|()| asking(&serving, "chart", text));
+        busy(&serving);
+        assert!(
+            left.iter_mut().all(is_waited_for),
+            "they take that long: {text}"
+        );
         drop(left);
-        ends(&serving, &text);
+        ends(&serving, text);
     }
     assert_eq!(serving.ask("point", POINT).status, 200);
 }

@@ -172,11 +172,15 @@ pub fn bytes(plan: &Plan) -> u64 {
     Memory::of(plan).per_thread + 2 * cells
 }
 
-/// Whether a chart may take many seconds: its cells follow motions, or are searched through.
+/// Whether a chart may take many seconds: its cells follow motions or are searched through, roots
+/// are those of another system than the letter's, or curves are walked step by step.
 #[must_use]
 pub fn is_slow(plan: &Plan) -> bool {
     let spec = &plan.spec;
-    spec.follows_motions()
+    let rooted = spec.fields.iter().any(|field| field.roots_needed() > 0);
+    (rooted && spec.beyond_letter())
+        || plan.walks_boundaries()
+        || spec.follows_motions()
         || spec.basin.is_some()
         || spec.critical.is_some()
         || spec.fields.iter().any(|field| field.of_margins())

@@ -163,6 +163,13 @@ impl Plan {
         }
     }
 
+    /// Whether crossing curves are traced, and walked step by step instead of by the closed form.
+    #[must_use]
+    pub fn walks_boundaries(&self) -> bool {
+        let plane = self.boundary_plane;
+        plane.is_some_and(|(_, q)| !planes_of_curves::traced_by_closed_form(&self.spec, q))
+    }
+
     /// Why no crossing curves are traced; none where they are.
     #[must_use]
     pub fn no_boundaries(&self) -> Option<NoBoundaries> {
