@@ -4,7 +4,8 @@
 
 use super::toml_reader::SpecError;
 
-/// The most signs and words: brackets, commas, dots, keys, values, line ends, runs of blanks.
+/// The most signs and words: brackets, commas, dots, keys, values, line ends, runs of blanks. A
+/// number is one word, and a comma counts together with blanks and one line end behind it.
 const MOST: u64 = 2_000_000;
 
 /// Refuses a text with too many signs and words.
@@ -36,9 +37,48 @@ fn length(bytes: &[u8]) -> usize {
         b' ' | b'\t' => until(&|byte| !matches!(byte, b' ' | b'\t')),
         b'#' => until(&|byte| byte == b'\n'),
         quote @ (b'"' | b'\'') => length_of_string(bytes, quote),
+        b',' => length_of_comma(bytes),
+        b'0'..=b'9' | b'+' | b'-' => length_of_number(bytes),
         sign if is_sign(sign) => 1,
-        _ => until(&|byte| is_sign(byte) || matches!(byte, b' ' | b'\t' | b'#' | b'"' | b'\'')),
+        _ => length_of_word(bytes),
     }
+}
+
+/// The length of a word, of which the first byte is not looked at.
+fn length_of_word(bytes: &[u8]) -> usize {
+    let ends = |byte| is_sign(byte) || matches!(byte, b' ' | b'\t' | b'#' | b'"' | b'\'');
+    1 + bytes[1..].iter().take_while(|byte| !ends(**byte)).count()
+}
+
+/// The length of a number with its decimal point, or else of a word: dots divide keys of digits.
+fn length_of_number(bytes: &[u8]) -> usize {
+    let whole = length_of_word(bytes);
+    if bytes.get(whole) != Some(&b'.') {
+        return whole;
+    }
+    let end = whole + length_of_word(&bytes[whole..]);
+    match bytes[end + blanks(&bytes[end..])..].first() {
+        Some(b'.' | b'=') => whole,
+        _ => end,
+    }
+}
+
+/// The length of a comma with the blanks behind it, one line end, and the blanks of the next line.
+fn length_of_comma(bytes: &[u8]) -> usize {
+    let mut at = 1 + blanks(&bytes[1..]);
+    let line_end = match &bytes[at..] {
+        [b'\n', ..] => 1,
+        [b'\r', b'\n', ..] => 2,
+        _ => return at,
+    };
+    at += line_end;
+    at + blanks(&bytes[at..])
+}
+
+/// The number of blanks at the beginning of `bytes`.
+fn blanks(bytes: &[u8]) -> usize {
+    let blank = |byte: &&u8| matches!(byte, b' ' | b'\t');
+    bytes.iter().take_while(blank).count()
 }
 
 fn is_sign(byte: u8) -> bool {
@@ -95,11 +135,8 @@ mod tests {
             "=",
             " ",
             "[",
-            "1",
-            ".",
-            "5",
-            ",",
-            " ",
+            "1.5",
+            ", ",
             "\"x, \\\" #y\"",
             "]",
             " ",
@@ -119,6 +156,26 @@ mod tests {
         ];
         assert_eq!(parts(text), cut);
         assert_eq!(parts("µ=\"ä\\"), ["µ", "=", "\"ä\\"]);
+    }
+
+    #[test]
+    fn a_decimal_number_is_one_word_and_a_comma_takes_the_line_end_behind_it() {
+        let text = "[-1.5e-3, \r\n\t+2.0,\n\n7,]";
+        let cut = [
+            "[", "-1.5e-3", ", \r\n\t", "+2.0", ",\n", "\n", "7", ",", "]",
+        ];
+        assert_eq!(parts(text), cut);
+        // Keys of digits are divided.
+        assert_eq!(parts("1.2 =3.4"), ["1", ".", "2", " ", "=", "3.4"]);
+        assert_eq!(parts("1.2.x"), ["1", ".", "2.x"]);
+    }
+
+    #[test]
+    fn a_list_of_many_decimals_is_accepted() {
+        for behind in [",", ", ", ",\n    "] {
+            let list = format!("x = [{}]\n", format!("-1.25{behind}").repeat(600_000));
+            assert_eq!(check(&list), Ok(()));
+        }
     }
 
     #[test]
