@@ -5,6 +5,10 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// How long a file is waited for that another process lets nobody open yet.
+const LEASED: Duration = Duration::from_secs(2);
 
 /// Why a file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -114,10 +118,24 @@ fn opened(options: &mut OpenOptions, path: &Path, flags: i32) -> Result<File, No
     }
     #[cfg(not(unix))]
     let _ = flags;
-    let file = options.open(path)?;
+    let file = opened_by_all(options, path).map_err(NotRead::Refused)?;
     match file.metadata()?.is_file() {
         true => Ok(file),
         false => Err(NotRead::Foreign),
+    }
+}
+
+/// Opens a file. Where somebody holds a lease on it, the system asks them to give it up; that is
+/// waited for.
+fn opened_by_all(options: &OpenOptions, path: &Path) -> io::Result<File> {
+    let begun = Instant::now();
+    loop {
+        match options.open(path) {
+            Err(error) if error.kind() == ErrorKind::WouldBlock && begun.elapsed() < LEASED => {
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            opened => return opened,
+        }
     }
 }
 
@@ -158,6 +176,44 @@ mod tests {
         assert_eq!(head(&path("file"), 3).unwrap(), b"012");
         assert!(matches!(read(&path("none"), 9), Err(NotRead::Refused(_))));
         assert!(lock_file(&path("new")).is_ok() && append(&path("new")).is_ok());
+    }
+
+    /// Who is asked to give up a lease on a file is waited for, but not for long.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_leased_file_is_waited_for() {
+        use std::os::fd::AsRawFd;
+        // `F_SETSIG` of <fcntl.h>.
+        const SET_SIGNAL: i32 = 10;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        fs::write(&path, "text").unwrap();
+        let holder = OpenOptions::new().write(true).open(&path).unwrap();
+        let lease = |kind: i32| {
+            // SAFETY: the file is open. The signal that asks for the lease is one that is ignored.
+            let set = unsafe {
+                libc::fcntl(holder.as_raw_fd(), SET_SIGNAL, libc::SIGURG)
+                    | libc::fcntl(holder.as_raw_fd(), libc::F_SETLEASE, kind)
+            };
+            assert_eq!(set, 0, "{}", io::Error::last_os_error());
+        };
+        lease(libc::F_WRLCK);
+        let begun = Instant::now();
+        let refused = open(&path).unwrap_err();
+        assert!(begun.elapsed() >= LEASED);
+        let NotRead::Refused(error) = refused else {
+            panic!("{refused}");
+        };
+        assert_eq!(error.raw_os_error(), Some(libc::EWOULDBLOCK));
+        lease(libc::F_UNLCK);
+        lease(libc::F_WRLCK);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(200));
+                lease(libc::F_UNLCK);
+            });
+            assert_eq!(read(&path, 9).unwrap(), b"text");
+        });
     }
 
     /// Files of the system say that they have no bytes.
