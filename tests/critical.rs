@@ -14,9 +14,9 @@ use slipmap::critical::{
     CriticalVelocity, GRAZE_PRECISION, Method, Options, Problem, RampOptions, Regime, Transition,
     by_simulation, critical_velocity,
 };
+use slipmap::model::stop::Stop;
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion::Accuracy;
-use slipmap::slip::stop::Stop;
 
 #[path = "common/chance_problem.rs"]
 mod chance_problem;

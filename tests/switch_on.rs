@@ -7,12 +7,12 @@ use std::path::Path;
 
 use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
 use slipmap::critical::{Options, Problem, Regime};
+use slipmap::model::stop::Stop;
 use slipmap::model::{Control, FrictionLaw, Oscillator, Table};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::Outcome;
-use slipmap::slip::stop::Stop;
 use slipmap::sweep::{Field, Plan};
 
 #[path = "common/map.rs"]

@@ -4,10 +4,10 @@ use super::options::{Options, RampOptions};
 use super::transition::Transition;
 use crate::linear::{Count, MarginalTolerance};
 use crate::model::friction::Kind;
+use crate::model::stop::Stop;
 use crate::model::{FrictionLaw, Groups};
 use crate::slip::motion::{Accuracy, Motion, Parameters, remembered};
 use crate::slip::sliding::Sliding;
-use crate::slip::stop::Stop;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of
 /// [`crate::slip::motion`].

@@ -8,9 +8,9 @@ use super::problem::Problem;
 use super::regime::{Followed, Observation, Regime, Response};
 use super::return_map::{Cycle, NoReturn, Period, ReturnMap, Stop};
 use crate::model::FrictionLaw;
+use crate::model::stop::Stop as StopFlag;
 use crate::slip::motion::{Accuracy, Stretch};
 use crate::slip::outcome::{Outcome, Summary};
-use crate::slip::stop::Stop as StopFlag;
 
 /// A problem with M = κ = N0 = μ_S = 1.
 pub(super) fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {

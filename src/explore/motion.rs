@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::slip::stop::Stop;
+use crate::model::stop::Stop;
 use crate::sweep::cells::samples::Most;
 use crate::sweep::cells::trace::Sample;
 use crate::sweep::cells::trace::{TraceError, TraceEvent};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::finite;
 use crate::critical::limit::LimitCell;
 use crate::model::ModelError;
-use crate::slip::stop::Stop;
+use crate::model::stop::Stop;
 use crate::sweep::Setting;
 use crate::sweep::cells::vc;
 use crate::sweep::input::field::{Field, OUTCOMES, number_of_outcome};

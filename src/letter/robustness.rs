@@ -8,9 +8,9 @@ use super::workshop::{Source, Workshop, column, source};
 use crate::critical::{Options, Problem, critical_velocity};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::FrictionLaw;
+use crate::model::stop::Stop;
 use crate::slip::cycle::after_release;
 use crate::slip::motion::Accuracy;
-use crate::slip::stop::Stop;
 use crate::store::MapFile;
 use crate::sweep::Field;
 

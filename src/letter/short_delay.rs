@@ -6,8 +6,8 @@ use super::workshop::{Source, Workshop, column, source};
 use crate::critical::limit::{CoulombLimit, LimitCell};
 use crate::critical::{Options, Problem, critical_velocity};
 use crate::linear::Crossings;
+use crate::model::stop::Stop;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::stop::Stop;
 use crate::sweep::Field;
 
 const FIG4: Source = source!("fig4");

@@ -9,8 +9,8 @@ use utoipa::ToSchema;
 
 use super::LetterError;
 use crate::maps::maker::{self, Job};
+use crate::model::stop::Stop;
 use crate::report::picture::{self, PictureOptions};
-use crate::slip::stop::Stop;
 use crate::store::describe::Provenance;
 use crate::store::map_file::Plane;
 use crate::store::schema::root;

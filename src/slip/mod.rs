@@ -27,5 +27,3 @@ pub mod sliding;
 pub mod step;
 mod table_series;
 pub mod watch;
-
-pub use crate::model::stop;

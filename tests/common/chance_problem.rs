@@ -1,8 +1,8 @@
 //! Problems of critical velocities by chance, for tests and benches alike.
 
 use slipmap::critical::{Options, Problem};
+use slipmap::model::stop::Stop;
 use slipmap::model::{FrictionLaw, Table};
-use slipmap::slip::stop::Stop;
 
 #[path = "chance.rs"]
 mod chance;

@@ -3,10 +3,10 @@
 
 use slipmap::critical::switch_on::{Phase, Trials};
 use slipmap::critical::{self, CriticalVelocity, Options, Problem, Regime, critical_velocity};
+use slipmap::model::stop::Stop;
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
-use slipmap::slip::stop::Stop;
 use slipmap::sweep::CaseSpec;
 
 use super::asked::{case_file, phase_file, simulate_command, vc_command};

@@ -2,10 +2,10 @@
 //! its trace.
 
 use super::samples::{Most, Samples};
+use crate::model::stop::Stop;
 use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
-use crate::slip::stop::Stop;
 use crate::sweep::input::case_file::{CaseSpec, Sampling};
 
 /// The most samples of a trace: some 300 MB.
