@@ -842,11 +842,8 @@ fn odd_names_and_texts_are_answered() {
     use std::os::unix::ffi::OsStrExt;
     let folder = Folder::with(&[("small.toml", SMALL)]);
     let odd = std::ffi::OsStr::from_bytes(b"\xff.h5");
-    let refused = folder
-        .command(&["run", "small.toml", "-o"])
-        .arg(odd)
-        .output();
-    expect(&refused.unwrap(), 2, "is not UTF-8");
+    let mut command = folder.command(&["run", "small.toml", "-o"]);
+    expect(&output(command.arg(odd)), 2, "is not UTF-8");
     let args = ["run", "small.toml", "-o", "newdir/"];
     expect(&folder.run(&args), 2, "does not name a file");
     assert_eq!(folder.files(), ["small.toml"]);

@@ -919,7 +919,7 @@ fn a_run_with_little_address_space_ends_in_order() {
         let mut command = Command::new("sh");
         command.args(["-c", &script, env!("CARGO_BIN_EXE_slipmap")]);
         command.args(args).current_dir(folder.path());
-        command.output().unwrap()
+        program::output(&mut command)
     };
     let runs = |limit: u64| limited(limit, &["--version"]).status.code() == Some(0);
     // The least in which the program starts at all, to 1 MiB.

@@ -416,8 +416,8 @@ fn what_is_not_known_is_not_told_as_a_number() {
 fn colours_are_as_asked_for() {
     let folder = Folder::new();
     let coloured = |args: &[&str]| {
-        let output = folder.command(args).env_remove("NO_COLOR").output();
-        err(&output.unwrap()).contains('\u{1b}')
+        let mut command = folder.command(args);
+        err(&program::output(command.env_remove("NO_COLOR"))).contains('\u{1b}')
     };
     assert!(!coloured(&["info", "none.h5"]));
     assert!(coloured(&["--color", "always", "info", "none.h5"]));

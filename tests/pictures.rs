@@ -343,7 +343,7 @@ fn the_preview_has_colours_as_color_says() {
         if let Some(value) = no_color {
             command.env("NO_COLOR", value);
         }
-        let output = command.output().unwrap();
+        let output = program::output(&mut command);
         assert!(output.status.success(), "{}", err(&output));
         let text = out(&output);
         assert!(text.contains("unstable"), "{text}");

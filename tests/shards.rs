@@ -3,6 +3,9 @@
 //! Slurm.
 #![cfg(unix)]
 
+#[path = "common/program.rs"]
+mod program;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -70,7 +73,7 @@ impl Work {
 }
 
 fn succeed(command: &mut Command) -> Output {
-    let output = command.output().expect("the command can be run");
+    let output = program::output(command);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command:?}: {said}");
     output
@@ -91,7 +94,7 @@ fn a_plain_shell_computes_shards_and_merges_them() {
     // Again: nothing is left to do.
     succeed(&mut work.command(&shards, &["sweep.toml", "map.h5", "5", "2"]));
     for arguments in [&["sweep.toml", "map.h5"][..], &["none.toml", "map.h5", "2"]] {
-        let refused = work.command(&shards, arguments).output().unwrap();
+        let refused = program::output(&mut work.command(&shards, arguments));
         assert!(!refused.status.success(), "{arguments:?}");
     }
 }
@@ -111,8 +114,7 @@ fn more_shards_than_open_files_are_merged() {
 #[test]
 fn a_merge_without_shards_is_refused() {
     let work = Work::new();
-    let refused = work.command("slipmap", &["merge", "map.h5"]).output();
-    let refused = refused.expect("the command can be run");
+    let refused = program::output(&mut work.command("slipmap", &["merge", "map.h5"]));
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2), "{said}");
     assert!(said.contains("no shards"), "{said}");
@@ -150,7 +152,7 @@ fn task(work: &Work, id: u32, (first, step, count): (u32, u32, u32), arguments: 
         .env("SLURM_ARRAY_TASK_STEP", step.to_string())
         .env("SLURM_ARRAY_TASK_COUNT", count.to_string())
         .env("SLURM_CPUS_PER_TASK", "2");
-    task.output().expect("a shell")
+    program::output(&mut task)
 }
 
 #[test]

@@ -764,11 +764,10 @@ fn h5py_reads_a_map_of_turning() {
     );
     let program = std::env::var("SLIPMAP_PYTHON").unwrap_or_else(|_| "python3".into());
     let mut python = std::process::Command::new(program);
-    let output = python
+    python
         .args(["-c", SCRIPT, "map.h5"])
-        .current_dir(folder.path())
-        .output();
-    let output = output.unwrap();
+        .current_dir(folder.path());
+    let output = program::output(&mut python);
     assert!(output.status.success(), "{}", err(&output));
     let read: Value = serde_json::from_str(&out(&output)).unwrap();
     let system: slipmap::sweep::input::system::SystemModel =
