@@ -73,7 +73,14 @@ fn limit() -> Option<u64> {
     };
     // SAFETY: the limit is live during the call.
     let asked = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) };
-    (asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY).then_some(limit.rlim_cur)
+    let limited = asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY;
+    #[allow(
+        clippy::useless_conversion,
+        clippy::unnecessary_fallible_conversions,
+        reason = "limits have 32 bits on some systems"
+    )]
+    let bytes = u64::try_from(limit.rlim_cur).ok();
+    bytes.filter(|_| limited)
 }
 
 #[cfg(not(unix))]
