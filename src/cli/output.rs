@@ -138,9 +138,12 @@ pub(super) fn tell_assembled(assembled: &Assembled) {
         say::note(format_args!("{curves} crossing curves, {corners} corners"));
     }
     if assembled.planes_left_out > 0 {
-        let planes = grouped(assembled.planes_left_out);
+        let planes = match assembled.planes_left_out {
+            1 => "1 plane".to_owned(),
+            planes => format!("{} planes", grouped(planes)),
+        };
         say::remark(format_args!(
-            "warning: no curves in {planes} planes, where there are too many to trace"
+            "warning: no curves in {planes}, where there are too many to trace"
         ));
     }
     match assembled.best_planes {
