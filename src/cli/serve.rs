@@ -44,7 +44,8 @@ pub(super) struct Args {
     /// Listen on this address instead of this machine's own: others can then reach the server
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     address: IpAddr,
-    /// Threads that compute [default: all that this process may use]
+    /// Threads for quick requests, and as many for slow ones [default: all that this process may
+    /// use]
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
