@@ -234,6 +234,20 @@ mod tests {
     }
 
     #[test]
+    fn roots_beyond_the_letter_and_walked_curves_are_slow() {
+        let slow = |text: &str| is_slow(&Chart::plan(text, Limits::default()).unwrap());
+        let rooted = format!("fields = [\"abscissa\"]\nboundaries = false\n{PLANE}");
+        assert!(!slow(PLANE) && !slow(&rooted));
+        assert!(slow(&format!("{rooted}memory = 0.97\n")));
+        assert!(slow(&format!("{rooted}latency = 30\n")));
+        // Curves are walked beyond the letter, and in planes without the delay.
+        let counted = format!("boundaries = false\n{PLANE}memory = 0.97\n");
+        assert!(!slow(&counted) && slow(&counted.replace("false", "true")));
+        let gains = PLANE.replace("tau =", "alpha_n =") + "tau = 4\n";
+        assert!(!slow(&gains) && slow(&format!("boundaries = true\n{gains}")));
+    }
+
+    #[test]
     fn too_much_is_refused_before_anything_is_computed() {
         for (fields, points, most) in [
             ("", 50_001, 4_000_000),
