@@ -160,7 +160,8 @@ fn in_doubt(line: &DelayLine, stretch: &Stretch) -> bool {
 fn bound(line: &DelayLine, tau: f64) -> Option<Bound> {
     crossings(line).enumerate().find_map(|(i, crossing)| {
         let branch = crossing.branch_at(tau);
-        (crossing.delay(branch) == tau).then_some((i, branch))
+        // A phase of 0 or of 2π, which rounding does not tell apart, has the same passages.
+        (crossing.delay(branch) == tau).then(|| (i, branch - crossing.first_branch))
     })
 }
 

@@ -34,7 +34,7 @@ pub struct Stretch {
     pub bounds: (Option<Bound>, Option<Bound>),
 }
 
-/// A crossing of a line by the number of its frequency and its branch.
+/// A crossing of a line by the number of its frequency and of its passage.
 pub type Bound = (usize, u64);
 
 impl Stretch {
@@ -57,7 +57,9 @@ impl Stretch {
     }
 
     fn touches(&self, other: &Self) -> bool {
-        let overlap = self.from < other.to && other.from < self.to;
+        let (from, to) = (self.from.max(other.from), self.to.min(other.to));
+        // Regions of gains of both signs meet at their ends where control is weak.
+        let overlap = to - from > NARROWEST * (1.0 + to);
         // Of a box that is a line a stretch is a point.
         let points = (self.from, self.to) == (other.from, other.to) && self.from == self.to;
         overlap || points || (self.bounds == other.bounds && self.bounds.0.is_some())
