@@ -84,7 +84,7 @@ test_browser() {
     [ -n "${SLIPMAP_STATIC_PAGE:-}" ] || rm "$BROWSER_TESTS/run/static.test.mjs"
     [ -n "${SLIPMAP_GUIDE:-}" ] || rm "$BROWSER_TESTS/run/guide.test.mjs"
     export SLIPMAP_ROOT SLIPMAP_PROGRAM=${SLIPMAP_PROGRAM:-$SLIPMAP_ROOT/target/release/slipmap}
-    node --test --test-concurrency=1 --test-timeout=400000 --test-force-exit "$BROWSER_TESTS"/run/*.test.mjs
+    node --test --test-concurrency=1 --test-timeout=900000 --test-force-exit "$BROWSER_TESTS"/run/*.test.mjs
 }
 
 # Leaves SLIPMAP_STATIC_PAGE empty where it cannot be made.
