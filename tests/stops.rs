@@ -35,8 +35,8 @@ fn stopped(request: Request, text: &str) {
 /// A sweep over the gain of velocity control and the delay, with `fields` and fixed values.
 fn plane(head: &str, longest: f64, fixed: &str) -> String {
     format!(
-        "{head}\n[axes]\nalpha_v = {{ from = -2.0, to = 2.0, points = 12 }}\n\
-         tau = {{ from = 0.1, to = {longest:?}, points = 12 }}\n[fixed]\nmu_prime = -0.3\n{fixed}\n"
+        "{head}\n[axes]\nalpha_v = {{ from = -2.0, to = 2.0, points = 60 }}\n\
+         tau = {{ from = 0.1, to = {longest:?}, points = 60 }}\n[fixed]\nmu_prime = -0.3\n{fixed}\n"
     )
 }
 

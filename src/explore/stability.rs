@@ -1,4 +1,6 @@
 //! Linear stability of a linear model at a delay and over all others, with its roots.
+//!
+//! Longer than most files: one answer, of which every number has its description here.
 
 use serde::Serialize;
 

@@ -82,8 +82,8 @@ pub fn trace_plane_until(
 }
 
 /// Traces the curves of the plane spanned by the axes `(p, q)` at `index` along the others, whether
-/// the plan has them traced or not. If one of the two is the delay, it is q. Once `stop` is set, the
-/// answer comes soon but is meaningless.
+/// the plan has them traced or not. If one of the two is the delay, it is q. Once `stop` is set,
+/// the answer comes soon but is meaningless.
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
