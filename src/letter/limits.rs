@@ -382,7 +382,8 @@ impl ShortDelays {
             "pure velocity control … is not able to stabilize unstable continuous sliding states",
         );
         let how = "All stable delays at 60,000 gains of either sign, up to 1,000 √(κ/M), for each \
-            slope, and the shortest one refined; beyond α_v = κ/(2μ′N0) no crossing leads back to stability.";
+            slope, and the shortest one refined; beyond α_v = κ/(2μ′N0) no crossing leads back to \
+            stability.";
         let shortest = self.velocity.iter().map(|(b, tau)| {
             let meaning = "shortest stable delay at any gain, √(M/κ); none: no gain stabilises";
             Value::of(format!("shortest at {b}"), meaning, *tau).within(SHORTEST_ERROR * tau)

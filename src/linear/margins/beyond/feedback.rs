@@ -94,8 +94,8 @@ impl Beyond {
         }
     }
 
-    /// The interval of delays around `tau` in which sliding is stable; none where it is not. And how
-    /// many frequencies took many digits.
+    /// The interval of delays around `tau` in which sliding is stable; none where it is not. And
+    /// how many frequencies took many digits.
     pub(in super::super) fn stable_interval_at(
         &self,
         groups: Groups,
