@@ -78,7 +78,9 @@ fn cells_stop() {
 #[test]
 fn motions_stop() {
     let law = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5";
-    let text = plane("fields = [\"vc\"]", 100.0, "").replace("mu_prime = -0.3\n", "");
+    let text = plane("fields = [\"vc\"]", 100.0, "")
+        .replace("mu_prime = -0.3\n", "")
+        .replace("points = 60", "points = 12");
     stopped(Request::Chart, &format!("{text}{law}\n"));
 }
 
