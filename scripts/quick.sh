@@ -5,7 +5,7 @@
 #
 # Formatting, lints, the structure of the source, unit tests of the library without features, that is of the model, of linear
 # stability, of motions and of the critical velocity, and its quick tests in tests/. A name picks the tests that contain it, as
-# in cargo test. Takes a minute on two cores where little has changed. scripts/test.sh checks everything.
+# in cargo test. Takes forty seconds on two cores when all is built, and minutes the first time. scripts/test.sh checks everything.
 set -euo pipefail
 
 # shellcheck source=scripts/setup.sh
