@@ -270,7 +270,7 @@ SYSTEMS
     both point --map=roots_all_velocity.h5 --at=mu_prime=-0.3 --at=alpha_v=-0.4 --at=tau=4
     both vc --map=vc_load.h5 --at=mu_prime_rest=-1 --at=alpha_n=-10 --at=tau=0.5
     both simulate --map=motions_latency.h5 --at=alpha_n=-10 --at=tau=0.5 --fresh
-    told reproduce --quick --json
+    told -q reproduce --quick --json
     for words in fig2a fig3a fig4 rate_state_load velocity_memory_late turning_lobes roots_all_velocity system_pd best_letter_load; do
         both info "$words.h5"
         told export "$words.h5" --comments
