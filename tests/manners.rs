@@ -665,10 +665,16 @@ fn is_nullable(schema: &Value) -> bool {
         || of("oneOf").chain(of("anyOf")).any(is_nullable)
 }
 
-/// Every property of a schema, by its name.
-fn properties(schema: &Value, found: &mut Vec<(String, Value)>) {
+/// Every property of a schema, by its name, and whether it is always there.
+fn properties(schema: &Value, found: &mut Vec<(String, Value, bool)>) {
     if let Some(of) = schema["properties"].as_object() {
-        found.extend(of.iter().map(|(name, value)| (name.clone(), value.clone())));
+        let required = schema["required"].as_array().into_iter().flatten();
+        let required: Vec<&str> = required.filter_map(Value::as_str).collect();
+        let always = |name: &String| required.contains(&name.as_str());
+        found.extend(
+            of.iter()
+                .map(|(name, value)| (name.clone(), value.clone(), always(name))),
+        );
     }
     match schema {
         Value::Object(parts) => parts.values().for_each(|part| properties(part, found)),
@@ -677,17 +683,32 @@ fn properties(schema: &Value, found: &mut Vec<(String, Value)>) {
     }
 }
 
+/// Every key is there, and where it may be null its description says what that means.
 #[test]
 fn schemas_say_of_each_key_what_null_means() {
     let folder = Folder::new();
     let mut nullable = 0;
     for command in [
-        "best", "info", "plan", "point", "simulate", "status", "vc", "verify",
+        "basin",
+        "best",
+        "info",
+        "margins",
+        "plan",
+        "point",
+        "reproduce",
+        "simulate",
+        "status",
+        "vc",
+        "verify",
     ] {
         let schema = serde_json::from_str(&out(&folder.run(&["schema", command]))).unwrap();
         let mut found = Vec::new();
         properties(&schema, &mut found);
-        for (name, property) in found.iter().filter(|(_, property)| is_nullable(property)) {
+        for (name, property, required) in &found {
+            assert!(required, "{command}: {name} may be missing");
+            if !is_nullable(property) {
+                continue;
+            }
             // Of what is an object or null, it stands beside the object.
             let kinds = property["oneOf"].as_array().into_iter().flatten();
             let mut told = kinds.chain([property]).map(|of| &of["description"]);

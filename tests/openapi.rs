@@ -136,6 +136,37 @@ fn the_description_is_as_it_was() {
     insta::assert_snapshot!(text.replace(&version, "\"[version]\""));
 }
 
+/// A key whose value may be missing is there with null. Only problems, and arrays without runs or
+/// kinds, leave keys out.
+#[test]
+fn keys_are_always_there() {
+    let folder = Folder::new();
+    let described = Described::of(&Serving::new(&folder));
+    let optional = [
+        ("Array", "runs"),
+        ("FieldHead", "kinds"),
+        ("Problem", "detail"),
+        ("Problem", "help"),
+        ("Problem", "span"),
+    ];
+    let schemas = described.0["components"]["schemas"].as_object().unwrap();
+    let mut checked = 0;
+    for (name, schema) in schemas {
+        let parts = schema["allOf"].as_array().into_iter().flatten();
+        for part in parts.chain([schema]) {
+            let required = part["required"].as_array().into_iter().flatten();
+            let required: BTreeSet<_> = required.filter_map(Value::as_str).collect();
+            for key in part["properties"].as_object().into_iter().flatten() {
+                let key = key.0.as_str();
+                let always = !optional.contains(&(name.as_str(), key));
+                assert_eq!(required.contains(key), always, "{name}.{key}");
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 200, "{checked}");
+}
+
 /// Its own examples are answered with what it says.
 #[test]
 fn answers_have_the_fields_that_are_named() {

@@ -23,11 +23,13 @@ pub(super) struct BestAnswer {
     regions_left_out: usize,
     /// The setting whose slowest decay is fastest within a spread; null where none is asked for,
     /// and where no setting stays stable.
+    #[schema(required)]
     robust: Option<RobustOut>,
     /// How far the recommended setting, the robust one where there is one, is from the boundary of
     /// stability.
     margins: Margins,
     /// The critical velocity of the recommended setting; null without a friction law.
+    #[schema(required)]
     vc: Option<CriticalVelocity>,
 }
 
@@ -99,6 +101,7 @@ pub(super) struct OptimumNumbers {
     frequency: f64,
     frequencies: Vec<f64>,
     /// −1/abscissa; null where the setting is not stable.
+    #[schema(required)]
     relaxation_time: Option<f64>,
     kind: &'static str,
     certified: bool,

@@ -31,6 +31,7 @@ pub(super) struct CaseFacts {
     units: Vec<(&'static str, String)>,
     start: StartFacts,
     /// When control is switched on; null where it never is, or at a phase of stick-slip.
+    #[schema(required)]
     switch_on: Option<f64>,
     /// Until when the outcome is looked for.
     horizon: f64,
@@ -38,6 +39,7 @@ pub(super) struct CaseFacts {
     /// The most steps of the integrator.
     steps: u64,
     /// End of the samples; null where they end when the outcome is known.
+    #[schema(required)]
     until: Option<f64>,
 }
 
@@ -50,6 +52,7 @@ struct StartFacts {
     assumed: bool,
     /// Just released from uncontrolled stick-slip, this long before switch-on; null where it starts
     /// otherwise.
+    #[schema(required)]
     switch_on_phase: Option<f64>,
 }
 

@@ -114,8 +114,10 @@ struct Facts {
     #[schema(value_type = BTreeMap<String, u64>)]
     status: Vec<(&'static str, u64)>,
     /// Crossing curves; null where the map holds none.
+    #[schema(required)]
     curves: Option<CurveFacts>,
     /// Best settings; null where the map holds none.
+    #[schema(required)]
     best: Option<BestFacts>,
 }
 
@@ -125,7 +127,7 @@ struct FieldFacts {
     bytes: u64,
     bytes_on_disk: u64,
     /// The smallest and largest finite value; null where there is none, and of kinds.
-    #[schema(value_type = Option<[f64; 2]>)]
+    #[schema(value_type = Option<[f64; 2]>, required)]
     range: Option<(f64, f64)>,
     /// Cells of −∞ and +∞.
     infinite: u64,
@@ -148,6 +150,7 @@ struct CurveFacts {
 struct BestFacts {
     planes: u64,
     /// Null where no plane has a stable setting.
+    #[schema(required)]
     shortest_relaxation_time: Option<f64>,
 }
 

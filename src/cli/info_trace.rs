@@ -58,21 +58,29 @@ pub(super) struct Facts {
 #[derive(Serialize, ToSchema)]
 struct Numbers {
     /// When the outcome was known; null where the trace does not tell.
+    #[schema(required)]
     decided: Option<f64>,
     /// Until ẋ stays within 1 % of v0; null where it does not come to sliding.
+    #[schema(required)]
     settle_time: Option<f64>,
     /// The smallest load since switch-on; null where the motion ended before.
+    #[schema(required)]
     n_min: Option<f64>,
     /// The largest spring force since switch-on; null where it grew beyond all numbers.
+    #[schema(required)]
     peak_force: Option<f64>,
     /// Period of stick-slip; null where it did not end up in that.
+    #[schema(required)]
     period: Option<f64>,
     /// Time stuck in one period; null where there is no period.
+    #[schema(required)]
     stick_time: Option<f64>,
     /// Time in slip in one period; null where there is no period.
+    #[schema(required)]
     slip_time: Option<f64>,
     /// Until the last stick ended; 0 where there is none after switch-on, null where sticks go on
     /// periodically.
+    #[schema(required)]
     last_release: Option<f64>,
 }
 

@@ -103,6 +103,7 @@ struct Facts {
     fields: Vec<&'static str>,
     /// What is said of the start of motions that no key gives, and of many starts; null where a key
     /// does, or no field is of motions.
+    #[schema(required)]
     start: Option<String>,
     cells: u64,
     tiles: u64,
@@ -112,8 +113,10 @@ struct Facts {
     /// The two axes of these planes; empty without any.
     boundaries_of: Vec<String>,
     /// Why there are none; null where there are.
+    #[schema(required)]
     no_boundaries: Option<String>,
     /// Null where no best settings are asked for.
+    #[schema(required)]
     best_planes: Option<u64>,
     /// Bytes of all cells in memory, and about those of the map on disk.
     bytes: u64,

@@ -25,16 +25,22 @@ pub(super) struct Facts {
     kind: &'static str,
     case: CaseFacts,
     /// Samples in each step of the integrator; null where they have an interval.
+    #[schema(required)]
     samples_per_step: Option<u32>,
     /// Time between samples; null where they follow the steps.
+    #[schema(required)]
     interval: Option<f64>,
     /// Samples of the trace, without those at events; null where only the motion tells.
+    #[schema(required)]
     samples: Option<u64>,
     /// Bytes of so many samples before compression; null where only the motion tells.
+    #[schema(required)]
     bytes: Option<u64>,
     /// The trace that `simulate` writes by default; null for a case from standard input.
+    #[schema(required)]
     trace: Option<String>,
     /// The picture that it draws by default; null for a case from standard input.
+    #[schema(required)]
     picture: Option<String>,
 }
 

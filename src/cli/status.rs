@@ -56,8 +56,10 @@ struct StatusAnswer {
     cells: u64,
     cells_done: u64,
     /// Of the runs that work on it; null where none does.
+    #[schema(required)]
     cells_per_second: Option<f64>,
     /// Until the slowest of them is done; null where that is not known.
+    #[schema(required)]
     seconds_left: Option<f64>,
     /// Cells with each flag, and `unflagged` ones.
     #[schema(value_type = BTreeMap<String, u64>)]
@@ -78,8 +80,10 @@ struct ShardAnswer {
     pieces_done: u64,
     damaged_files: u64,
     /// Of the run that works on it; null where none does.
+    #[schema(required)]
     cells_per_second: Option<f64>,
     /// Until it is done; null where that is not known.
+    #[schema(required)]
     seconds_left: Option<f64>,
 }
 

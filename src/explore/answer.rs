@@ -105,6 +105,7 @@ pub struct WithCommand<T> {
     #[serde(flatten)]
     pub answer: T,
     /// The command line; none where flags cannot say it.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub command: Option<String>,
 }
 

@@ -79,14 +79,19 @@ impl Followed {
 pub struct BasinShare {
     /// The share of those that are known to slide; null where there is no uncontrolled stick-slip
     /// to switch on in.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub basin_share: Option<f64>,
     /// The standard error of it and of `basin_share_upper`, from the spread between scramblings:
     /// 3.1 starts of all at least where fewer than five differ from the others. 0 where sliding is
-    /// linearly unstable.
+    /// linearly unstable, null where the share is.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub basin_share_error: Option<f64>,
-    /// The share if all undecided starts ended in sliding.
+    /// The share if all undecided starts ended in sliding; null where the share is.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub basin_share_upper: Option<f64>,
-    /// In which the share lies with 95 % confidence, undecided starts taken either way.
+    /// In which the share lies with 95 % confidence, undecided starts taken either way; null where
+    /// the share is.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub interval: Option<[f64; 2]>,
     /// Whether sliding is linearly unstable: then none but exceptional starts end in it, and the
     /// share is 0.
@@ -98,10 +103,13 @@ pub struct BasinShare {
     /// Independent scramblings of their sequence, each with as many.
     pub scramblings: u32,
     /// Velocities at t = 0, from and to; null over phases.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub x_dot0: Option<[f64; 2]>,
     /// Elongations at t = 0 and before, from and to; null over phases.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub a0: Option<[f64; 2]>,
     /// The period of the uncontrolled cycle; null over states.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub period: Option<f64>,
     /// Time after switch-on until which motions were followed.
     pub horizon: f64,

@@ -17,6 +17,7 @@ pub struct ChartHead {
     /// Its curves, with an array of the first and the second coordinate by turns.
     curves: Vec<CurveHead>,
     /// How long it took to compute, in milliseconds; none where there is no clock.
+    #[cfg_attr(feature = "serve", schema(required))]
     milliseconds: Option<f64>,
 }
 

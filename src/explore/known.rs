@@ -35,6 +35,7 @@ pub struct KnownParameter {
     /// Powers of force, length and time in its unit.
     pub dimension: [i32; 3],
     /// Its value where none is given; none where one has to be.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub default: Option<f64>,
     /// The smallest and the largest value.
     pub range: [f64; 2],
@@ -43,6 +44,7 @@ pub struct KnownParameter {
     /// What it belongs to: `model`, `sliding`, `pull`, `law`, `start` or `limit`.
     pub group: &'static str,
     /// The flag that gives it on the command line, if there is one.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub flag: Option<String>,
 }
 
@@ -53,6 +55,7 @@ pub struct KnownLaw {
     /// The word for it in texts.
     pub name: &'static str,
     /// Its formula; none for a table.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub formula: Option<&'static str>,
     /// The parameters that describe it, besides μ_S.
     pub parameters: Vec<&'static str>,
@@ -73,12 +76,15 @@ pub struct KnownField {
     /// The same in a few words.
     pub short_name: &'static str,
     /// What a reader should know besides.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub comment: Option<&'static str>,
     /// How its values are spread, which tells what scale shows them.
     pub spread: &'static str,
     /// The sign of values where sliding is stable, for values on both sides of 0.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stable_sign: Option<f64>,
     /// The names of its kinds, by their numbers.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub kinds: Option<Vec<&'static str>>,
     /// How it is stored: `count`, `kind`, `few` or `real`.
     pub storage: &'static str,

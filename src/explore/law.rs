@@ -21,6 +21,7 @@ pub struct LawCurve {
     /// Its name.
     pub law: &'static str,
     /// Its formula; none for a table.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub formula: Option<&'static str>,
     /// 201 speeds, evenly spaced.
     pub v: Vec<f64>,
@@ -35,6 +36,7 @@ pub struct LawCurve {
     /// The unit of speeds; "1" where none is given.
     pub unit_v: String,
     /// Where the block is pulled, if the setting says.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub at: Option<LawPoint>,
 }
 

@@ -20,25 +20,33 @@ pub struct Margins {
     pub decays: bool,
     /// The factors of both gains between which the setting keeps the decay rate; null where it does
     /// not have it.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub gain_margin: Option<Range>,
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting does not have the decay rate.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub phase_margin: Option<f64>,
     /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
     /// the setting without latency does not have the decay rate.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub latency_margin: Option<f64>,
     /// The delays between which the setting keeps the decay rate; null where it does not have it.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub tau_margin: Option<Margin>,
     /// The slopes μ_K′ between which it stays, at fixed μ_K; null where it does not have it, and
     /// where there is a friction law.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub mu_prime_margin: Option<Margin>,
     /// The sliding velocities between which it stays; null where it does not have it, and where
     /// there is no friction law.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
     /// it does not have it, null where that is not known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stability_radius: Option<f64>,
     /// That box; null where the setting does not have the decay rate.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stability_box: Option<StabilityBox>,
     /// The margins above that are undecided or not available for this system; their null values
     /// mean this.
@@ -53,12 +61,16 @@ pub struct Margins {
 pub struct LookedUpTo {
     /// The factor of both gains; null where the upper end is known, known not to be, or not
     /// decided.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub gain_margin: Option<f64>,
     /// The latency; null where the margin is known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub latency_margin: Option<f64>,
     /// The delay; null where the upper end is known, known not to be, or not decided.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub tau_margin: Option<f64>,
     /// The sliding velocity; null where the upper end is known, and without a friction law.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub v0_margin: Option<f64>,
 }
 
@@ -67,8 +79,10 @@ pub struct LookedUpTo {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Range {
     /// The lower end; null where there is none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub lower: Option<f64>,
     /// The upper end; null where there is none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub upper: Option<f64>,
 }
 
@@ -77,12 +91,16 @@ pub struct Range {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Margin {
     /// The distance downwards; null where no smaller value matters.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub lower: Option<f64>,
     /// The distance upwards; null where no larger value matters.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub upper: Option<f64>,
     /// The value below at which stability, or the decay rate, is lost; null where at none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub from: Option<f64>,
     /// The value above; null where at none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub to: Option<f64>,
 }
 
@@ -99,6 +117,7 @@ pub struct StabilityBox {
     /// Relative changes, in the order of gain, delay and third parameter, at which stability, or
     /// the decay rate, is lost just beyond the box, or a root touches the line within rounding;
     /// null where no change up to 1 does that.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub lost_at: Option<[f64; 3]>,
 }
 

@@ -26,6 +26,7 @@ pub struct Point {
     /// Stiffness over the critical one of rate-and-state friction, below which steady sliding
     /// without control is unstable; null where it is stable at every stiffness, and under other
     /// laws.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stiffness_ratio: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]

@@ -29,6 +29,7 @@ const MOST_INTERVALS: usize = 100_000;
 pub struct Stability {
     /// The number of characteristic roots with positive real part; null where there are infinitely
     /// many or it is not known, see `reason`.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub n_unstable: Option<u64>,
     /// Whether sliding is stable.
     pub stable: bool,
@@ -37,15 +38,18 @@ pub struct Stability {
     pub marginal: bool,
     /// Why the point is special: `root-at-origin`, `root-on-axis`, `infinite`, `neutral-limit`,
     /// `no-rightmost-root`, `degree-unknown` or `refused`; null where it is not.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub reason: Option<&'static str>,
     /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
     /// one is null where it has none. Empty where it is stable at none, null where they are not
     /// known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stable_delays: Option<Vec<[Option<f64>; 2]>>,
     /// Some are left out.
     pub stable_delays_truncated: bool,
     /// The distance in τ to the nearest change of stability, positive where stable; null where it
     /// never changes, and where it is not known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub delay_margin: Option<f64>,
     /// What that distance is: `finite`, `infinite` or `unknown`.
     pub delay_margin_kind: MarginKind,
@@ -54,26 +58,33 @@ pub struct Stability {
     pub delay_margin_sign: i8,
     /// The number of unstable roots as the delay goes to 0; null where there are infinitely many or
     /// it is not known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub n_at_zero_delay: Option<u64>,
     /// The shortest delay at which roots cross the imaginary axis; null where they do at none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub first_crossing: Option<f64>,
     /// By how much the number of unstable roots grows there; null where there is no such delay.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub first_change: Option<i8>,
     /// Where roots cross the imaginary axis as the delay grows; null where that is not known.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub crossings: Option<Vec<PointCrossing>>,
     /// The latencies at the point's delay.
     #[serde(flatten)]
     pub latencies: Latencies,
     /// The real part at which infinitely many roots accumulate; null where they do nowhere.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub essential_abscissa: Option<f64>,
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
     /// Re λ of the line to the right of which roots are counted; null where none was requested.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub line: Option<f64>,
     /// The number of roots right of that line; null where none was asked for, where a root lies
     /// within rounding of it, and where there are infinitely many: it is less than
     /// `essential_abscissa`.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub n_right_of_line: Option<u64>,
 }
 
@@ -84,6 +95,7 @@ pub struct Latencies {
     /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
     /// latency; the end of the last one is null where it has none. Null where latency has no
     /// meaning in the system.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
     /// Some are left out.
     pub stable_latencies_truncated: bool,
@@ -110,8 +122,10 @@ pub struct PointCrossing {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Spectrum {
     /// The spectral abscissa; null where no root converged.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub abscissa: Option<f64>,
     /// |Im λ| of the rightmost root; null where no root converged, and where there is none.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub frequency: Option<f64>,
     /// Re λ and Im λ ≥ 0, by falling real part.
     pub roots: Vec<[f64; 2]>,
@@ -119,9 +133,11 @@ pub struct Spectrum {
     pub certified: bool,
     /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|); null where no
     /// root converged.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub certificate_margin: Option<f64>,
     /// Re λ of a vertical line, right of the rightmost root, that the argument principle finds no
     /// root right of; null where it does not tell.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub certified_line: Option<f64>,
     /// Why there are fewer roots than asked for.
     #[serde(skip)]

@@ -23,8 +23,10 @@ pub struct SystemPoint {
     /// τ.
     pub tau: f64,
     /// R; null for P and Q, which have no memory.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub memory: Option<f64>,
     /// δ; null for P and Q, which have no latency.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub latency: Option<f64>,
     /// Whether all delays are covered. They are not where P or Q depends on the delay: then only
     /// `n_unstable` and the roots are given, and all values about other delays are null.
@@ -32,6 +34,7 @@ pub struct SystemPoint {
     /// The largest latency of the feedback, counted from none, at which the setting stays stable; 0
     /// where it is unstable without latency. Null where it is infinite or unknown, and for P and Q,
     /// which have no latency.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub latency_margin: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]

@@ -20,13 +20,16 @@ use crate::sweep::input::source::Source;
 pub struct CriticalVelocity {
     /// v_c; null where `outcome` says why there is none: stick-slip persists up to the largest v0
     /// that is tried, or the block lifts off.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub vc: Option<f64>,
     /// A lower bound of v_c, by a margin below the ends found by all searches; v_c itself where it
     /// is decided. Null where lift-off comes before any stick-slip.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub vc_lower: Option<f64>,
     /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
     /// decided. Null where neither was seen up to the end of the range, or where slow
     /// searches disagree whether it lifts off.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub vc_upper: Option<f64>,
     /// The protocol: `follow` or `switch-on`.
     pub protocol: &'static str,
@@ -35,12 +38,16 @@ pub struct CriticalVelocity {
     /// Where it survives: v0 from and to.
     pub windows: Vec<[f64; 2]>,
     /// The smallest v0 at which N ≤ 0 occurs; null where that does not end stick-slip.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub v_liftoff: Option<f64>,
     /// Time stuck in a period at v_c; null where no orbit of stick-slip is known there.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub stick_time: Option<f64>,
     /// Time in slip in a period at v_c; null where no orbit of stick-slip is known there.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub slip_time: Option<f64>,
     /// The smallest load at v_c; null where no orbit of stick-slip is known there.
+    #[cfg_attr(feature = "serve", schema(required))]
     pub n_min: Option<f64>,
     /// What gave the answer.
     pub method: &'static str,

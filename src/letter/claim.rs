@@ -69,11 +69,14 @@ pub struct Value {
     /// What it is, and in which unit where it has one.
     pub meaning: String,
     /// The number; null where it is infinite or there is none.
+    #[schema(required)]
     pub value: Option<f64>,
     /// How far off it is at most, or its standard error where `meaning` says so; null for a count,
     /// or a truth that has none.
+    #[schema(required)]
     pub error: Option<f64>,
     /// What the letter says instead.
+    #[schema(required)]
     pub letter: Option<f64>,
 }
 

@@ -80,7 +80,8 @@ pub struct Figure {
     pub source: String,
     /// Whether that is `sweeps/NAME.toml` as it stands.
     pub shipped: bool,
-    /// Its map or trace, where that is kept.
+    /// Its map or trace; null where that is not kept.
+    #[schema(required)]
     pub file: Option<String>,
     /// Its picture, SVG.
     #[serde(skip)]

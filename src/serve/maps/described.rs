@@ -24,6 +24,7 @@ pub(super) struct WindowHead {
     /// From left to right.
     pub x: WindowAxis,
     /// From bottom to top; none for a line.
+    #[schema(required)]
     pub y: Option<WindowAxis>,
     /// Where it lies along the other axes.
     pub at: Vec<WindowAt>,
