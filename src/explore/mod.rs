@@ -4,7 +4,7 @@
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
 //! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
-//!   [`along_delay`]: over its delays
+//!   [`stable_line`]: its stable delays and latencies; [`along_delay`]: over its delays
 //! - [`system_point`]: the same for a system from a file
 //! - [`margin_kind`]: whether a distance to a change of stability is finite, infinite or unknown
 //! - [`margins`]: how far a point is from the boundary of stability
@@ -37,6 +37,7 @@ pub mod motion_bytes;
 pub mod point;
 pub mod problem;
 pub mod stability;
+pub mod stable_line;
 pub mod system_point;
 pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]

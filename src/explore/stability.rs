@@ -1,11 +1,10 @@
 //! Linear stability of a linear model at a delay and over all others, with its roots.
-//!
-//! Longer than most files: one answer, of which every number has its description here.
 
 use serde::Serialize;
 
 use super::finite;
 use super::margin_kind::{MarginKind, sign};
+use super::stable_line::{Latencies, MOST_INTERVALS, crossings_known, delays_known, ends};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
@@ -18,10 +17,6 @@ use crate::linear::{Crossings, Direction, MarginalTolerance};
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::sweep::LinearModel;
-
-/// The most stable intervals. Near a tangency there can be millions; the answer says if some are
-/// left out.
-const MOST_INTERVALS: usize = 100_000;
 
 /// Stability of a linear model at a delay.
 #[derive(Debug, Clone, Serialize)]
@@ -86,23 +81,6 @@ pub struct Stability {
     /// `essential_abscissa`.
     #[cfg_attr(feature = "serve", schema(required))]
     pub n_right_of_line: Option<u64>,
-}
-
-/// What there is to know of the latencies of the feedback at one delay.
-#[derive(Debug, Clone, Default, Serialize)]
-#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct Latencies {
-    /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
-    /// latency; the end of the last one is null where it has none. Null where latency has no
-    /// meaning in the system.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
-    /// Some are left out.
-    pub stable_latencies_truncated: bool,
-    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency
-    /// has no meaning.
-    #[serde(skip)]
-    pub margin: Option<f64>,
 }
 
 /// A crossing frequency, with its delays `first_delay` + 2πk/ω.
@@ -280,43 +258,6 @@ impl Stability {
             spectrum: Spectrum::of_system(&counter, &found, (at, time_unit), wanted.roots),
         }
     }
-}
-
-impl Latencies {
-    /// The latencies at the dimensionless delay `tau`.
-    fn of(system: &System, (tau, time_unit): (f64, f64)) -> Self {
-        let Some(line) = DelayLine::of_latencies(system, tau) else {
-            return Self::default();
-        };
-        let margin = line.latency_margin();
-        let line = line.in_physical_time(time_unit);
-        let mut intervals = line.stable_intervals();
-        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        Self {
-            stable_latencies: Some(ends(&stable)),
-            stable_latencies_truncated: margin.is_nan()
-                || intervals.next().is_some()
-                || intervals.gave_up(),
-            margin: Some(margin * time_unit),
-        }
-    }
-}
-
-/// Whether the stable delays of a line are known. Where infinitely many roots are unstable there
-/// are none.
-fn delays_known(line: &DelayLine) -> bool {
-    line.reason == Some(Reason::Infinite) || crossings_known(line)
-}
-
-/// Whether the crossings of a line are known. What is always marginal for no reason is a line with
-/// too many crossings to list, or without a count to begin with.
-fn crossings_known(line: &DelayLine) -> bool {
-    !line.uncounted && (!line.always_marginal || line.reason.is_some())
-}
-
-fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
-    let ends = |s: &StableInterval| [Some(s.from), finite(s.to)];
-    intervals.iter().map(ends).collect()
 }
 
 /// The shortest delay at which a pair crosses, and the change of the count there.

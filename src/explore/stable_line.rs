@@ -1,0 +1,67 @@
+//! The stable delays or latencies of a line, as answers tell them, and whether they are known.
+
+use serde::Serialize;
+
+use super::finite;
+use crate::linear::general::reason::Reason;
+use crate::linear::general::{DelayLine, System};
+use crate::linear::stable_delays::StableInterval;
+
+/// The most stable intervals. Near a tangency there can be millions; the answer says if some are
+/// left out.
+pub(super) const MOST_INTERVALS: usize = 100_000;
+
+/// What there is to know of the latencies of the feedback at one delay.
+#[derive(Debug, Clone, Default, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Latencies {
+    /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
+    /// latency; the end of the last one is null where it has none. Null where latency has no
+    /// meaning in the system.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
+    /// Some are left out.
+    pub stable_latencies_truncated: bool,
+    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency
+    /// has no meaning.
+    #[serde(skip)]
+    pub margin: Option<f64>,
+}
+
+impl Latencies {
+    /// The latencies at the dimensionless delay `tau`.
+    pub(super) fn of(system: &System, (tau, time_unit): (f64, f64)) -> Self {
+        let Some(line) = DelayLine::of_latencies(system, tau) else {
+            return Self::default();
+        };
+        let margin = line.latency_margin();
+        let line = line.in_physical_time(time_unit);
+        let mut intervals = line.stable_intervals();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        Self {
+            stable_latencies: Some(ends(&stable)),
+            stable_latencies_truncated: margin.is_nan()
+                || intervals.next().is_some()
+                || intervals.gave_up(),
+            margin: Some(margin * time_unit),
+        }
+    }
+}
+
+/// Whether the stable delays of a line are known. Where infinitely many roots are unstable there
+/// are none.
+pub(super) fn delays_known(line: &DelayLine) -> bool {
+    line.reason == Some(Reason::Infinite) || crossings_known(line)
+}
+
+/// Whether the crossings of a line are known. What is always marginal for no reason is a line with
+/// too many crossings to list, or without a count to begin with.
+pub(super) fn crossings_known(line: &DelayLine) -> bool {
+    !line.uncounted && (!line.always_marginal || line.reason.is_some())
+}
+
+/// The ends of stable intervals; the end of the last one is none where it has none.
+pub(super) fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
+    let ends = |s: &StableInterval| [Some(s.from), finite(s.to)];
+    intervals.iter().map(ends).collect()
+}
