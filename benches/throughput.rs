@@ -22,6 +22,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use slipmap::maps::maker::{Job, make, make_in_memory};
+use slipmap::model::stop::Stop;
 use slipmap::store::describe::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Attended;
@@ -83,7 +84,7 @@ fn count(plan: &Plan, threads: usize) -> f64 {
         threads,
         || Worker::new(plan),
         |worker, number| {
-            worker.compute(&plan.tiles.tile(number));
+            worker.compute(&plan.tiles.tile(number), &Stop::default());
             std::hint::black_box(&worker.buffers);
         },
     )

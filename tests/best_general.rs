@@ -18,6 +18,7 @@ use serde_json::Value;
 use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
 use slipmap::linear::general::{Polynomial, System};
 use slipmap::model::Groups;
+use slipmap::model::stop::Stop;
 use slipmap::store::MapFile;
 use walk::Walk;
 
@@ -40,21 +41,27 @@ fn the_letter_by_both_ways() {
             SearchedGain::Velocity => ((-2.0, 1.0), (0.0, 25.0)),
             SearchedGain::Load => ((-6.0, 1.0), (0.0, 25.0)),
         };
-        let one = best(&Search {
-            family,
-            gains,
-            delays,
-        });
-        let system_at = |value: f64, _tau: f64| Some(letter(family.groups(value), 0.0, 0.0));
-        let other = best(&Search {
-            family: General {
-                system_at: &system_at,
-                lines: true,
-                width: gains.1 - gains.0,
+        let one = best(
+            &Search {
+                family,
+                gains,
+                delays,
             },
-            gains,
-            delays,
-        });
+            &Stop::default(),
+        );
+        let system_at = |value: f64, _tau: f64| Some(letter(family.groups(value), 0.0, 0.0));
+        let other = best(
+            &Search {
+                family: General {
+                    system_at: &system_at,
+                    lines: true,
+                    width: gains.1 - gains.0,
+                },
+                gains,
+                delays,
+            },
+            &Stop::default(),
+        );
         assert_eq!(one.regions.len(), other.regions.len(), "{b} {gain:?}");
         let pairs = one.regions.iter().zip(&other.regions);
         for (p, q) in pairs.map(|(p, q)| (&p.best, &q.best)) {
@@ -189,15 +196,18 @@ impl Problem {
 
     fn best(&self) -> Best {
         let system_at = |gain: f64, _tau: f64| Some(self.system(gain));
-        best(&Search {
-            family: General {
-                system_at: &system_at,
-                lines: true,
-                width: self.gains.1 - self.gains.0,
+        best(
+            &Search {
+                family: General {
+                    system_at: &system_at,
+                    lines: true,
+                    width: self.gains.1 - self.gains.0,
+                },
+                gains: self.gains,
+                delays: self.delays,
             },
-            gains: self.gains,
-            delays: self.delays,
-        })
+            &Stop::default(),
+        )
     }
 }
 

@@ -11,6 +11,7 @@ use serde_json::Value;
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use slipmap::model::stop::Stop;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::input::field::Storage;
@@ -63,7 +64,7 @@ fn setting(row: &Row, [force, length, time]: [f64; 3]) -> Setting {
 }
 
 fn point(setting: &Setting, line: Option<f64>) -> Value {
-    let point = Point::at(setting, Wanted { roots: 1, line }).unwrap();
+    let point = Point::at(setting, Wanted { roots: 1, line }, &Stop::default()).unwrap();
     serde_json::to_value(point).unwrap()
 }
 

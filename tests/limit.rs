@@ -6,6 +6,7 @@ mod program;
 
 use program::{Folder, err, expect, out};
 use serde_json::Value;
+use slipmap::model::stop::Stop;
 use slipmap::sweep::{Field, Plan, SweepSpec};
 
 /// μ_K/μ_S, γ, v_c/ṽ, ω0 T, lift-off.
@@ -89,7 +90,7 @@ fn lift_off_lies_above_the_critical_velocity() {
         let mut seen = 0;
         for number in 0..plan.tiles.len() {
             let tile = plan.tiles.tile(number);
-            worker.compute(&tile);
+            worker.compute(&tile, &Stop::default());
             let of = |field| {
                 let mut columns = worker.buffers.columns.iter();
                 let column = columns.find(|c| c.field == field);

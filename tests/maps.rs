@@ -11,6 +11,7 @@ use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::general::{RightOf, RootCounter};
 use slipmap::linear::status::MARGINAL;
+use slipmap::model::stop::Stop;
 use slipmap::store::MapFile;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
 use slipmap::sweep::{Field, Parameter, Plan, engine};
@@ -459,7 +460,7 @@ fn best_settings_are_those_of_the_library() {
         let found = map.best().unwrap();
         assert_eq!(found.len(), planes.len());
         for (found, index) in found.iter().zip(&planes) {
-            let expected = best_of_plane(&plan, index).unwrap();
+            let expected = best_of_plane(&plan, index, &Stop::default()).unwrap();
             let best = &expected.overall;
             assert_eq!((found.gain, found.tau, found.abscissa), (best.gain, best.tau, best.abscissa));
             assert_eq!(found.relaxation_time, best.relaxation_time());
@@ -614,7 +615,7 @@ fn cells(text: &str, mut visit: impl FnMut(&slipmap::sweep::Setting, u16)) {
     let strides = plan.tiles.strides();
     for number in 0..plan.tiles.len() {
         let tile = plan.tiles.tile(number);
-        worker.compute(&tile);
+        worker.compute(&tile, &Stop::default());
         let n = worker.buffers.n_unstable.as_ref().unwrap();
         for cell in 0..tile.cells() as usize {
             let inside = index_of(cell, &tile.extent);

@@ -19,6 +19,7 @@ use slipmap::explore::stability::Wanted;
 use slipmap::linear::general::{DelayLine, System};
 use slipmap::linear::stable_delays::StableInterval;
 use slipmap::linear::{Count, Crossings, MarginalTolerance};
+use slipmap::model::stop::Stop;
 use slipmap::sweep::input::system::SystemModel;
 use slipmap::sweep::{LinearModel, Parameter, Setting};
 
@@ -283,7 +284,9 @@ fn points_of_the_table() {
             roots: 1,
             line: None,
         };
-        let found = Point::at(&setting, wanted).unwrap().stability;
+        let found = Point::at(&setting, wanted, &Stop::default())
+            .unwrap()
+            .stability;
         let n = row.number("n_unstable").map(|n| n as u64);
         assert_eq!((found.n_unstable, found.marginal), (n, false), "{place}");
         assert_eq!(

@@ -5,6 +5,7 @@ use slipmap::linear::best::{
 };
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::model::Groups;
+use slipmap::model::stop::Stop;
 
 #[path = "common/program.rs"]
 mod program;
@@ -122,7 +123,7 @@ fn check_grid(search: &Search<Letter>, spread: f64, found: Option<&Robust>) {
 fn robust_settings_keep_what_they_promise() {
     let mut found_any = 0;
     for (search, spread) in problems(50) {
-        let regions: Best = best(&search);
+        let regions: Best = best(&search, &Stop::default());
         let found = robust(&search, &regions, spread);
         check_grid(&search, spread, found.as_ref());
         let Some(found) = found else { continue };

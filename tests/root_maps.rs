@@ -6,6 +6,7 @@ use std::path::Path;
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::linear::{Crossings, MarginalTolerance};
+use slipmap::model::stop::Stop;
 use slipmap::store::MapFile;
 use slipmap::sweep::input::field::Storage;
 use slipmap::sweep::plan::BLOCK_OF_DELAYS;
@@ -142,7 +143,7 @@ fn derivatives_are_those_of_the_abscissa_in_physical_units() {
         );
         let plan = Plan::new(text.parse().unwrap()).unwrap();
         let mut worker = engine::Worker::new(&plan);
-        worker.compute(&plan.tiles.tile(0));
+        worker.compute(&plan.tiles.tile(0), &Stop::default());
         let columns = worker.buffers.columns.iter();
         columns.map(|c| (c.field, c.cells[0])).collect()
     };

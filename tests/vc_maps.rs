@@ -362,7 +362,7 @@ fn a_stop_is_heeded_between_cells() {
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     let mut worker = engine::Worker::new(&plan);
     let stop = Stop::when(&stop);
-    assert!(!worker.compute_until(&plan.tiles.tile(0), &stop));
+    assert!(!worker.compute(&plan.tiles.tile(0), &stop));
 }
 
 #[test]

@@ -169,7 +169,10 @@ impl Args {
     ) -> Result<Recommended, Failure> {
         let (found, robust) = match self.robust {
             Some(spread) => robust_setting(setting, gain, ranges, spread)?,
-            None => (best_settings(setting, gain, ranges)?, None),
+            None => (
+                best_settings(setting, gain, ranges, &Stop::default())?,
+                None,
+            ),
         };
         let (gain, tau) = match &robust {
             Some(of) => (of.robust.gain, of.robust.tau),
@@ -187,7 +190,7 @@ impl Args {
             )?),
             None => None,
         };
-        let point = Point::at(&best, WANTED)?;
+        let point = Point::at(&best, WANTED, &Stop::default())?;
         Ok(Recommended {
             control: self.control(),
             ranges: *ranges,

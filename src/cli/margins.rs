@@ -6,6 +6,7 @@ use slipmap::explore::margins::{Margin, Margins, StabilityBox};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Stability, Wanted};
 use slipmap::model::Shown;
+use slipmap::model::stop::Stop;
 use slipmap::report::numbers::{counted, rounded, unit_behind};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
@@ -54,7 +55,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             "slipmap point gives its delay margin and, with --json, its latency margin",
         ));
     }
-    let margins = Margins::at(&setting, args.decay)?;
+    let margins = Margins::at(&setting, args.decay, &Stop::default())?;
     if args.json {
         let inputs = Inputs::of_setting(&setting, &units, |_| true).and("decay", args.decay);
         return json::print(&inputs, &margins);
@@ -65,7 +66,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let violations = match margins.decays {
         true => None,
-        false => violations(&Point::at(&setting, wanted)?.stability),
+        false => violations(&Point::at(&setting, wanted, &Stop::default())?.stability),
     };
     let mut out = ForPeople::begin();
     Ok(print(&mut out, (&margins, violations), &setting, &units)?)

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use slipmap::model::stop::Stop;
 use slipmap::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
 use slipmap::store::schema::STATUS;
 use slipmap::store::tiles::RecordEncoder;
@@ -270,12 +271,12 @@ struct Costs {
 
 impl Costs {
     fn of(plan: &Plan) -> Result<Self, Failure> {
-        let mut worker = Worker::new(plan);
+        let (mut worker, stop) = (Worker::new(plan), Stop::default());
         let mut encoder = RecordEncoder::default();
         let (mut stored, mut of_curves) = (Vec::new(), Vec::new());
         let tiles = Sample::take(plan.tiles.len(), |number| {
             let start = Instant::now();
-            worker.compute(&plan.tiles.tile(number));
+            worker.compute(&plan.tiles.tile(number), &stop);
             let piece = Piece::Tile(number as u64);
             let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
             stored.push(record.payload.len() as f64);
@@ -283,7 +284,7 @@ impl Costs {
         })?;
         let curves = Sample::take(plan.boundary_planes() as usize, |number| {
             let start = Instant::now();
-            let traced = trace_plane(plan, &plane(plan, number as u64))?;
+            let traced = trace_plane(plan, &plane(plan, number as u64), &stop)?;
             let taken = start.elapsed().as_secs_f64();
             let piece = Piece::Curves(number as u64);
             let record = encoder.encode(piece, Computed::Curves(&traced));
@@ -292,7 +293,7 @@ impl Costs {
         })?;
         let best = Sample::take(plan.best_planes() as usize, |number| {
             let start = Instant::now();
-            std::hint::black_box(best_of_plane(plan, &best_plane(plan, number as u64)));
+            std::hint::black_box(best_of_plane(plan, &best_plane(plan, number as u64), &stop));
             Ok(start.elapsed().as_secs_f64())
         })?;
         let bytes = Sample {

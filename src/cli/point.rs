@@ -10,6 +10,7 @@ use slipmap::explore::stability::{Spectrum, Stability, Wanted};
 use slipmap::explore::system_point::SystemPoint;
 use slipmap::linear::general::Reason;
 use slipmap::model::Shown;
+use slipmap::model::stop::Stop;
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
 use slipmap::sweep::input::system::{Evaluation, SystemModel};
@@ -149,7 +150,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         check_picture("--plot", plot, args.point.map())?;
     }
     let (setting, units) = args.point.read()?;
-    let point = Point::at(&setting, args.wanted(args.roots))?;
+    let point = Point::at(&setting, args.wanted(args.roots), &Stop::default())?;
     if point.stability.reason == Some(Reason::Refused.name()) {
         return Err(Failure::bad_input_with_help(
             "this system is not answered: |P| = |Q| on all of the imaginary axis",
@@ -217,7 +218,7 @@ fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result
         roots: ROOTS_DRAWN,
         line: None,
     };
-    let more = Point::at(setting, wanted)?;
+    let more = Point::at(setting, wanted, &Stop::default())?;
     let point = if more.stability.spectrum.incomplete {
         listed
     } else {

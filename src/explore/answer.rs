@@ -185,7 +185,7 @@ impl Asked {
                     line: None,
                 };
                 let stop = Stop::when(stop);
-                let answer = Point::at_until(setting, wanted, &stop)?;
+                let answer = Point::at(setting, wanted, &stop)?;
                 if stop.is_set() {
                     return Err(Problem::stopped());
                 }

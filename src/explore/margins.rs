@@ -123,18 +123,11 @@ pub struct StabilityBox {
 
 impl Margins {
     /// The margins of a setting with all its parameters, for a required decay rate of `decay` ≥ 0.
+    /// Once `stop` is set, the answer comes soon but is meaningless.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn at(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
-        Self::at_until(setting, decay, &Stop::default())
-    }
-
-    /// As [`Margins::at`]. Once `stop` is set, the answer comes soon but is meaningless.
-    ///
-    /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn at_until(setting: &Setting, decay: f64, stop: &Stop) -> Result<Self, ModelError> {
+    pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Self, ModelError> {
         let around = Around::of(setting, decay)?.heeding(stop);
         let mut margins = Self {
             decays: around.stable(),

@@ -37,19 +37,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// Linear stability of a setting with all its parameters.
+    /// Linear stability of a setting with all its parameters. Once `stop` is set, the answer comes
+    /// soon but is meaningless.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn at(setting: &Setting, wanted: Wanted) -> Result<Self, ModelError> {
-        Self::at_until(setting, wanted, &Stop::default())
-    }
-
-    /// As [`Point::at`]. Once `stop` is set, the answer comes soon but is meaningless.
-    ///
-    /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn at_until(setting: &Setting, wanted: Wanted, stop: &Stop) -> Result<Self, ModelError> {
+    pub fn at(setting: &Setting, wanted: Wanted, stop: &Stop) -> Result<Self, ModelError> {
         let sliding = setting.sliding_point()?;
         let (model, time_unit) = setting.linear()?;
         let tau = setting.get(Parameter::Tau);
@@ -58,7 +51,7 @@ impl Point {
             LinearModel::General(_) if setting.has_state() => {
                 Margins::of_stability(&stability, tau)
             }
-            _ => Margins::at_until(setting, 0.0, stop)?,
+            _ => Margins::at(setting, 0.0, stop)?,
         };
         Ok(Self {
             mu_prime: sliding.mu_prime,

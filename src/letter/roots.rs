@@ -241,7 +241,8 @@ impl Relaxation {
                 shop.step(&format!("the fastest decay under {control} at {mu_prime}"))?;
                 let mut setting = Setting::new(None);
                 setting.set(Parameter::MuPrime, mu_prime);
-                let found = best_settings(&setting, gain, &default_ranges(&setting, gain)?)?;
+                let ranges = default_ranges(&setting, gain)?;
+                let found = best_settings(&setting, gain, &ranges, &shop.stop())?;
                 for (what, positive) in names(gain) {
                     let same = found.regions.iter().map(|region| &region.best);
                     let same = same.filter(|best| (best.gain > 0.0) == positive);

@@ -1,6 +1,7 @@
 //! Checks whether a map is as it was written, and what other methods give for samples of its cells.
 
 use crate::linear::status::{DISAGREE, FLAGS};
+use crate::model::stop::Stop;
 use crate::store::sample::sample;
 use crate::store::schema::{STATUS, root};
 use crate::store::soundness::{check_checksums, check_schema, check_seal};
@@ -193,7 +194,7 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
             report.tiles_absent += 1;
             continue;
         }
-        worker.compute(&tile);
+        worker.compute(&tile, &Stop::default());
         let piece = Piece::Tile(number as u64);
         let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
         let Some(Content::Tile(computed)) = Content::read(piece, &record.payload) else {

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::cells::best::{BestSettings, best_of_plane_until, best_plane};
-use super::cells::boundaries::{BoundaryPlane, plane, trace_plane_until};
+use super::cells::best::{BestSettings, best_of_plane, best_plane};
+use super::cells::boundaries::{BoundaryPlane, plane, trace_plane};
 pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
 pub use super::cells::worker::Worker;
 use super::events::{Attended, Event, Observer};
@@ -287,21 +287,21 @@ fn next<C: Encode>(
     let piece = todo.next()?;
     let encoded = match piece {
         Piece::Curves(n) => {
-            let traced = trace_plane_until(plan, &plane(plan, n), stop);
+            let traced = trace_plane(plan, &plane(plan, n), stop);
             if stop.is_set() {
                 return None;
             }
             traced.map(|plane| encoder.encode(piece, Computed::Curves(&plane)))
         }
         Piece::Best(n) => {
-            let found = best_of_plane_until(plan, &best_plane(plan, n), stop);
+            let found = best_of_plane(plan, &best_plane(plan, n), stop);
             if stop.is_set() {
                 return None;
             }
             Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
         }
         Piece::Tile(n) => {
-            if !worker.compute_until(&plan.tiles.tile(n as usize), stop) {
+            if !worker.compute(&plan.tiles.tile(n as usize), stop) {
                 return None;
             }
             Ok(encoder.encode(piece, Computed::Tile(&worker.buffers)))

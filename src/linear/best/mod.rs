@@ -213,27 +213,16 @@ pub struct Best {
     pub regions_left_out: usize,
 }
 
-/// The settings of fastest decay in the box of `search`.
+/// The settings of fastest decay in the box of `search`. Once `stop` is set, the answer comes soon
+/// but is meaningless.
 ///
 /// The box must be finite, its ranges ordered and the delays not negative.
-///
-/// # Panics
-/// Never.
 #[must_use]
-pub fn best(search: &Search<impl Family>) -> Best {
-    best_until(search, &Stop::default()).expect("nothing stops it")
-}
-
-/// As [`best`]; none once `stop` is set.
-#[must_use]
-pub fn best_until(search: &Search<impl Family>, stop: &Stop) -> Option<Best> {
+pub fn best(search: &Search<impl Family>, stop: &Stop) -> Best {
     let mut evaluator = Evaluator::heeding(stop);
     let found = stable_regions(search, stop);
     let (mut regions, mut regions_left_out) = (Vec::new(), 0);
     for (searched, stretches) in found.into_iter().enumerate() {
-        if stop.is_set() {
-            return None;
-        }
         if regions.len() == MOST_REGIONS || searched >= MOST_SEARCHED || evaluator.ended() {
             regions_left_out += 1;
             continue;
@@ -259,12 +248,11 @@ pub fn best_until(search: &Search<impl Family>, stop: &Stop) -> Option<Best> {
             }
             least
         });
-    let found = Best {
+    Best {
         overall,
         regions,
         regions_left_out,
-    };
-    (!stop.is_set()).then_some(found)
+    }
 }
 
 /// A place from which to go down, the abscissa there and the length scales around it.

@@ -47,7 +47,7 @@ fn nothing_around_an_optimum_is_better() {
             gains,
             delays,
             ..
-        } in best(&search).regions
+        } in best(&search, &Stop::default()).regions
         {
             assert!(best.certified, "{search:?} {best:?}");
             let (width, height) = (gains.1 - gains.0, delays.1 - delays.0);
@@ -103,7 +103,7 @@ fn zoomed(search: &Search<Letter>, region: &Region) -> (f64, f64, f64) {
 #[test]
 fn optima_agree_with_a_zoom_by_brute_force() {
     for search in searches() {
-        let region = &best(&search).regions[0];
+        let region = &best(&search, &Stop::default()).regions[0];
         let (gain, tau, abscissa) = zoomed(&search, region);
         let found = &region.best;
         // At a root of multiplicity m the abscissa rises like the distance to the power 1/m, and
@@ -127,7 +127,7 @@ fn optima_agree_with_a_zoom_by_brute_force() {
 #[test]
 fn optima_are_at_least_as_good_as_a_fine_grid() {
     for search in searches() {
-        let found = best(&search).overall;
+        let found = best(&search, &Stop::default()).overall;
         let points = if search.family.fixed.b == -0.3 {
             400
         } else {
@@ -154,7 +154,7 @@ fn optima_are_at_least_as_good_as_a_fine_grid() {
 #[test]
 fn kinds_are_what_they_say() {
     for search in searches() {
-        for Region { best, .. } in best(&search).regions {
+        for Region { best, .. } in best(&search, &Stop::default()).regions {
             let groups = search.family.groups(best.gain);
             let lambda = Complex64::new(best.abscissa, best.frequency());
             let jet = Jet::at(groups, best.tau, lambda);
@@ -183,7 +183,7 @@ fn kinds_are_what_they_say() {
 #[test]
 fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
     for b in SLOPES {
-        let found = best(&load(b)).overall;
+        let found = best(&load(b), &Stop::default()).overall;
         assert_eq!(found.kind, Kind::TripleReal, "{found:?}");
         let gain = |tau: f64| {
             let lambda = -0.5 * b - 1.0 / tau;
@@ -210,7 +210,7 @@ fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
 #[test]
 fn lobes_relax_more_slowly_at_larger_delays() {
     for search in searches() {
-        let regions = best(&search).regions;
+        let regions = best(&search, &Stop::default()).regions;
         let times: Vec<f64> = regions
             .iter()
             .filter_map(|r| r.best.relaxation_time())
@@ -218,7 +218,7 @@ fn lobes_relax_more_slowly_at_larger_delays() {
         assert_eq!(times.len(), regions.len());
         assert!(times.is_sorted(), "{search:?} {times:?}");
     }
-    let times: Vec<f64> = best(&velocity(-0.05))
+    let times: Vec<f64> = best(&velocity(-0.05), &Stop::default())
         .regions
         .iter()
         .filter_map(|r| r.best.relaxation_time())
@@ -235,7 +235,7 @@ fn tiny_lobes_are_found() {
     let end = LobeControl::Velocity.lobe_end(0);
     for by in [0.0256, 1e-3, 1e-5] {
         let search = velocity(end.b + by);
-        let found = best(&search);
+        let found = best(&search, &Stop::default());
         assert_eq!(found.regions.len(), 1, "{by}");
         let best = &found.regions[0].best;
         assert!(best.abscissa < 0.0 && best.certified, "{best:?}");
@@ -244,7 +244,11 @@ fn tiny_lobes_are_found() {
             "{best:?}"
         );
     }
-    assert!(best(&velocity(end.b - 1e-5)).regions.is_empty());
+    assert!(
+        best(&velocity(end.b - 1e-5), &Stop::default())
+            .regions
+            .is_empty()
+    );
 }
 
 #[test]
@@ -262,7 +266,7 @@ fn boxes_without_stable_settings_give_the_least_unstable_one() {
     ] {
         let Best {
             overall, regions, ..
-        } = best(&search);
+        } = best(&search, &Stop::default());
         assert!(regions.is_empty() && overall.abscissa > 0.0, "{overall:?}");
         assert_eq!(overall.relaxation_time(), None);
         for step in 0..64 {
@@ -290,33 +294,42 @@ fn degenerate_boxes() {
         delays: (3.0, 5.0),
         ..velocity(-0.3)
     };
-    let along = best(&line).overall;
+    let along = best(&line, &Stop::default()).overall;
     assert_eq!((along.gain, along.kind), (-0.3, Kind::Edge));
     for i in 0..=2000 {
         assert!(value(&line, -0.3, 3.0 + f64::from(i) * 1e-3) >= along.abscissa - along.margin);
     }
-    let across = best(&Search {
-        gains: (-1.0, 0.0),
-        delays: (4.0, 4.0),
-        ..velocity(-0.3)
-    })
+    let across = best(
+        &Search {
+            gains: (-1.0, 0.0),
+            delays: (4.0, 4.0),
+            ..velocity(-0.3)
+        },
+        &Stop::default(),
+    )
     .overall;
     assert_eq!((across.tau, across.kind), (4.0, Kind::Edge));
     for i in 0..=1000 {
         assert!(value(&line, f64::from(i) * -1e-3, 4.0) >= across.abscissa - across.margin);
     }
-    let point = best(&Search {
-        gains: (-0.3, -0.3),
-        delays: (4.0, 4.0),
-        ..velocity(-0.3)
-    })
+    let point = best(
+        &Search {
+            gains: (-0.3, -0.3),
+            delays: (4.0, 4.0),
+            ..velocity(-0.3)
+        },
+        &Stop::default(),
+    )
     .overall;
     assert_eq!((point.gain, point.tau, point.kind), (-0.3, 4.0, Kind::Edge));
     assert_eq!(point.abscissa, value(&line, -0.3, 4.0));
-    let no_delay = best(&Search {
-        delays: (0.0, 0.0),
-        ..velocity(0.2)
-    })
+    let no_delay = best(
+        &Search {
+            delays: (0.0, 0.0),
+            ..velocity(0.2)
+        },
+        &Stop::default(),
+    )
     .overall;
     assert!((no_delay.abscissa + 0.1).abs() < 1e-12, "{no_delay:?}");
 }
@@ -328,7 +341,7 @@ fn friction_that_does_not_weaken() {
     for search in [velocity(0.0), load(0.0), velocity(0.2), load(0.2)] {
         let Best {
             overall, regions, ..
-        } = best(&search);
+        } = best(&search, &Stop::default());
         assert!(!regions.is_empty());
         assert!(
             matches!(overall.kind, Kind::DoublePair | Kind::TripleReal),
@@ -351,7 +364,7 @@ fn the_other_gain_may_act_too() {
             gains: (-3.0, 3.0),
             delays: (0.0, 15.0),
         };
-        let found = best(&search);
+        let found = best(&search, &Stop::default());
         assert!(!found.regions.is_empty());
         for Region { best, .. } in &found.regions {
             assert!(best.certified && best.abscissa < 0.0, "{best:?}");
@@ -371,7 +384,7 @@ fn a_valley_of_double_roots_is_followed_to_the_edge() {
         gains: (-10.0, 5.0),
         delays: (0.0, 25.0),
     };
-    let found = best(&search).overall;
+    let found = best(&search, &Stop::default()).overall;
     assert_eq!((found.gain, found.kind), (-10.0, Kind::Edge), "{found:?}");
     assert!(
         (found.abscissa - -0.9944).abs() < 1e-4 && found.certified,
@@ -519,7 +532,7 @@ fn by_chance(number: u64) -> Search<Letter> {
 fn optima_of_boxes_by_chance_agree_with_nested_searches() {
     for number in 180..204 {
         let search = by_chance(number);
-        let found = best(&search).overall;
+        let found = best(&search, &Stop::default()).overall;
         let (gain, tau, lowest) = nested(&search, 60, 100);
         assert!(
             found.certified && found.abscissa <= lowest + found.margin + 1e-7,
@@ -540,6 +553,6 @@ fn a_place_at_rest_is_no_optimum_where_the_valley_falls_from_it() {
         gains: (-5.307_106_585_327_528, -1.353_852_600_002_571),
         delays: (0.0, 12.481_464_154_198_896),
     };
-    let found = best(&search).overall;
+    let found = best(&search, &Stop::default()).overall;
     assert!((found.abscissa - -1.803_408_08).abs() < 1e-7, "{found:?}");
 }

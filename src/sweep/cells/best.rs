@@ -134,41 +134,26 @@ fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
 }
 
 /// The settings of fastest decay for every stable region within `ranges`. All parameters but `gain`
-/// and the delay are those of `setting`.
+/// and the delay are those of `setting`. Once `stop` is set, the answer comes soon but is
+/// meaningless.
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
-///
-/// # Panics
-/// Never.
 pub fn best_settings(
     setting: &Setting,
     gain: SearchedGain,
     ranges: &Ranges,
-) -> Result<BestSettings, ModelError> {
-    let found = best_settings_until(setting, gain, ranges, &Stop::default());
-    found.map(|found| found.expect("nothing stops it"))
-}
-
-/// As [`best_settings`]; none once `stop` is set.
-///
-/// # Errors
-/// When a parameter of `setting` is outside the model's range.
-pub fn best_settings_until(
-    setting: &Setting,
-    gain: SearchedGain,
-    ranges: &Ranges,
     stop: &Stop,
-) -> Result<Option<BestSettings>, ModelError> {
+) -> Result<BestSettings, ModelError> {
     let scales = Scales::of(setting, gain)?;
     let search = scales.search(setting, gain, ranges)?;
     let of_letter = !setting.has_state() && beyond_letter(setting).is_none();
     let found = if of_letter {
-        best::best_until(&search, stop)
+        best::best(&search, stop)
     } else {
         scales.beyond_letter(setting, &search, stop)?
     };
-    Ok(found.map(|found| scales.settings(&found, ranges)))
+    Ok(scales.settings(&found, ranges))
 }
 
 /// The first parameter by which the feedback is beyond the letter's own, whatever the gains are.
@@ -214,7 +199,7 @@ pub fn robust_setting(
         });
     }
     let search = scales.search(setting, gain, ranges)?;
-    let found = best::best(&search);
+    let found = best::best(&search, &Stop::default());
     let robust = best::robust(&search, &found, spread).map(|robust| {
         let best = &found.overall;
         let (worst, proved) = best::worst_around(&search, best.gain, best.tau, spread);
@@ -256,7 +241,7 @@ impl Scales {
         setting: &Setting,
         search: &Search<Letter>,
         stop: &Stop,
-    ) -> Result<Option<Best>, ModelError> {
+    ) -> Result<Best, ModelError> {
         let gain = parameter_of(search.family.gain);
         // What is wrong with the setting is wrong at every gain.
         setting.linear()?;
@@ -276,7 +261,7 @@ impl Scales {
             gains: search.gains,
             delays: search.delays,
         };
-        Ok(best::best_until(&search, stop))
+        Ok(best::best(&search, stop))
     }
 
     fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
@@ -302,15 +287,9 @@ pub fn best_plane(plan: &Plan, number: u64) -> Vec<usize> {
 }
 
 /// The best settings of a plan in the plane at `index`; none where a parameter is outside the
-/// model's range.
+/// model's range. Once `stop` is set, the answer comes soon but is meaningless.
 #[must_use]
-pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
-    best_of_plane_until(plan, index, &Stop::default())
-}
-
-/// As [`best_of_plane`]; none once `stop` is set.
-#[must_use]
-pub fn best_of_plane_until(plan: &Plan, index: &[usize], stop: &Stop) -> Option<BestSettings> {
+pub fn best_of_plane(plan: &Plan, index: &[usize], stop: &Stop) -> Option<BestSettings> {
     let (p, tau) = plan.best_plane()?;
     let axes = &plan.spec.axes;
     let ranges = Ranges {
@@ -318,5 +297,5 @@ pub fn best_of_plane_until(plan: &Plan, index: &[usize], stop: &Stop) -> Option<
         tau: axes[tau].range(),
     };
     let gain = searched_gain(axes[p].parameter.known()?)?;
-    best_settings_until(&plan.setting(index), gain, &ranges, stop).ok()?
+    best_settings(&plan.setting(index), gain, &ranges, stop).ok()
 }

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use super::best::Ranges;
 use crate::linear::best::{self, Best, General, Search};
 use crate::linear::general::{Class, System};
+use crate::model::stop::Stop;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::system::{Evaluation, SystemModel, Undefined};
 
@@ -115,7 +116,7 @@ pub fn best_of_system(
         });
     }
     let known = |value: f64, tau: f64| system_at(value, tau).ok();
-    Ok(best::best(&Search {
+    let search = Search {
         family: General {
             system_at: &known,
             lines: !model.depends_on_delay(),
@@ -123,7 +124,8 @@ pub fn best_of_system(
         },
         gains: ranges.gain,
         delays: ranges.tau,
-    }))
+    };
+    Ok(best::best(&search, &Stop::default()))
 }
 
 /// The parameter of that name which may be searched beside the delay.

@@ -55,23 +55,12 @@ pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: 
     index_of(number, &shape)
 }
 
-/// Traces the curves of the [`plane`] at `index`.
+/// Traces the curves of the [`plane`] at `index`. Once `stop` is set, the answer comes soon but is
+/// meaningless.
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
-pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelError> {
-    trace_plane_until(plan, index, &Stop::default())
-}
-
-/// As [`trace_plane`]. Once `stop` is set, the answer comes soon but is meaningless.
-///
-/// # Errors
-/// When a parameter is outside the model's range.
-pub fn trace_plane_until(
-    plan: &Plan,
-    index: &[usize],
-    stop: &Stop,
-) -> Result<BoundaryPlane, ModelError> {
+pub fn trace_plane(plan: &Plan, index: &[usize], stop: &Stop) -> Result<BoundaryPlane, ModelError> {
     match plan.boundary_plane {
         Some(plane) => trace_spanned(plan, plane, index, stop),
         None => Ok(BoundaryPlane {
@@ -256,7 +245,7 @@ mod tests {
             (vec![0.4, 1.1], vec![0.6, 0.9], 1.2),
         ] {
             let plan = sweep(&speeds, &mu_k, alpha_n);
-            let traced = trace_plane(&plan, &plane(&plan, 0)).unwrap();
+            let traced = trace_plane(&plan, &plane(&plan, 0), &Stop::default()).unwrap();
             let curves = traced.curves[0].curves.as_ref().unwrap();
             let columns = plan.spec.axes[0].values.iter().enumerate();
             for (i, &v0) in columns.filter(|(i, _)| (1..60).contains(i)) {

@@ -120,22 +120,17 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Computes every cell of `tile`.
-    pub fn compute(&mut self, tile: &Tile) {
-        self.compute_until(tile, &Stop::default());
-    }
-
-    /// Computes the cells of `tile` as [`Worker::compute`] does, but begins no further slow cell
-    /// once `stop` is set. False if the tile is not complete.
-    pub fn compute_until(&mut self, tile: &Tile, stop: &Stop) -> bool {
-        let complete = self.fill_until(tile, stop);
+    /// Computes every cell of `tile`, but begins no further slow cell once `stop` is set. False if
+    /// the tile is not complete.
+    pub fn compute(&mut self, tile: &Tile, stop: &Stop) -> bool {
+        let complete = self.fill(tile, stop);
         for column in &mut self.buffers.columns {
             one_zero_and_one_nan(&mut column.cells);
         }
         complete
     }
 
-    fn fill_until(&mut self, tile: &Tile, stop: &Stop) -> bool {
+    fn fill(&mut self, tile: &Tile, stop: &Stop) -> bool {
         if self.plan.spec.limit {
             self.buffers.clear();
             limit_columns::fill(self.plan, tile, &self.strides, &mut self.buffers);
