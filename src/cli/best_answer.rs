@@ -20,6 +20,7 @@ pub(super) struct BestAnswer {
     searched: RangesOut,
     best: OptimumOut,
     regions: Vec<RegionOut>,
+    /// Regions that are not among these: not searched, or with decay within rounding.
     regions_left_out: usize,
     /// The setting whose slowest decay is fastest within a spread; null where none is asked for,
     /// and where no setting stays stable.

@@ -32,6 +32,7 @@ pub(super) struct SystemBest {
     searched: SystemRanges,
     best: SystemOptimum,
     regions: Vec<SystemRegion>,
+    /// Regions that are not among these: not searched, or with decay within rounding.
     regions_left_out: usize,
     /// All about the best setting.
     point: SystemPoint,

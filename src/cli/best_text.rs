@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use slipmap::linear::best::Optimum;
-use slipmap::report::numbers::{rounded, unit_behind};
+use slipmap::report::numbers::{counted, rounded, unit_behind};
 use slipmap::sweep::cells::best::BestSettings;
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter};
@@ -243,7 +243,8 @@ pub(super) fn print_regions<'o>(
         0 => Ok(()),
         more => writeln!(
             out,
-            "  and {more} regions at longer delays, which were not searched"
+            "  and {} more, not searched or with decay within rounding",
+            counted(more as u64, "region")
         ),
     }
 }

@@ -30,7 +30,7 @@ pub struct MapBest {
     pub kind: Option<Kind>,
     /// Whether the argument principle confirms the abscissa.
     pub certified: bool,
-    /// Number of stable regions of the plane.
+    /// Number of stable regions of the plane, with those that are not told.
     pub regions: u64,
 }
 

@@ -126,9 +126,9 @@ pub mod best {
     pub const KIND: &str = "kind";
     /// Whether the argument principle confirms the abscissa.
     pub const CERTIFIED: &str = "certified";
-    /// Number of stable regions of the plane.
+    /// Number of stable regions of the plane, with those that are not told.
     pub const REGIONS: &str = "regions";
-    /// All of them.
+    /// The names of these variables.
     pub const ALL: [&str; 6] = [
         ABSCISSA,
         FREQUENCY,

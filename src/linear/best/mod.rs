@@ -208,8 +208,9 @@ pub struct Best {
     /// roots decay by more than rounding can do to the abscissa; regions with the same best setting
     /// are one.
     pub regions: Vec<Region>,
-    /// Regions beyond the first [`MOST_REGIONS`], and those at which the work of the search came to
-    /// its bound; they were not searched.
+    /// Regions that are not told: those beyond the first [`MOST_REGIONS`], those at which the work
+    /// of the search came to its bound, and those where roots decay by less than rounding can do to
+    /// the abscissa, if at all.
     pub regions_left_out: usize,
 }
 
@@ -221,19 +222,21 @@ pub struct Best {
 pub fn best(search: &Search<impl Family>, stop: &Stop) -> Best {
     let mut evaluator = Evaluator::heeding(stop);
     let found = stable_regions(search, stop);
-    let (mut regions, mut regions_left_out) = (Vec::new(), 0);
+    let (mut regions, mut within_rounding, mut regions_left_out) = (Vec::new(), Vec::new(), 0);
     for (searched, stretches) in found.into_iter().enumerate() {
         if regions.len() == MOST_REGIONS || searched >= MOST_SEARCHED || evaluator.ended() {
             regions_left_out += 1;
             continue;
         }
         let region = region(&mut evaluator, search, stretches);
-        if region.best.decays() {
-            add(&mut regions, region);
-        } else if evaluator.ended() {
-            regions_left_out += 1;
+        match region.best.decays() {
+            true => add(&mut regions, region),
+            false if evaluator.ended() => regions_left_out += 1,
+            false => add(&mut within_rounding, region),
         }
     }
+    let told = |of: &Region| regions.iter().any(|known| known.holds(&of.best));
+    regions_left_out += within_rounding.iter().filter(|of| !told(of)).count();
     regions.sort_by(|p: &Region, q: &Region| p.shortest().total_cmp(&q.shortest()));
     let overall = regions
         .iter()

@@ -52,7 +52,7 @@ pub struct BestSettings {
     pub overall: Optimum,
     /// Every stable region, ordered by its shortest delay.
     pub regions: Vec<BestRegion>,
-    /// Number of further regions, which were not searched.
+    /// Number of further regions, which were not searched or decay within rounding.
     pub regions_left_out: usize,
 }
 
