@@ -332,6 +332,50 @@ fn odd_maps_are_refused() {
     }
 }
 
+/// A sealed map that cannot be read any more is damaged where this version made it; where another
+/// one did, only `verify` reads all of it to see that bytes have changed.
+#[test]
+fn a_sealed_map_that_cannot_be_read_is_damaged() {
+    use hdf5::types::FixedUnicode;
+    let sound = Sound::new();
+    let path = sound.folder.path().join("map.h5");
+    let seal = sound.map.len()
+        - 1
+        - sound
+            .map
+            .iter()
+            .rev()
+            .skip(1)
+            .position(|b| *b == b'\n')
+            .unwrap();
+    for (version, told) in [
+        (
+            None,
+            (1, "is a damaged map: its bytes have changed, its axis tau"),
+        ),
+        (Some("0.0.9"), (2, "is not a slipmap map: its axis tau")),
+    ] {
+        sound.put("info", &sound.map);
+        let edited: hdf5::Result<()> = map::edit(&path, |file| {
+            if let Some(version) = version {
+                file.delete_attr("program_version")?;
+                let text: FixedUnicode<8> = version.parse().unwrap();
+                file.new_attr::<FixedUnicode<8>>()
+                    .create("program_version")?
+                    .write_scalar(&text)?;
+            }
+            file.unlink("tau")
+        });
+        edited.unwrap();
+        let bytes = [&fs::read(&path).unwrap(), &sound.map[seal - 1..]].concat();
+        fs::write(&path, bytes).unwrap();
+        let folder = &sound.folder;
+        expect(&folder.run(&["info", "map.h5"]), told.0, told.1);
+        let says = "is a damaged map: its bytes have changed, its axis tau";
+        expect(&folder.run(&["verify", "map.h5"]), 1, says);
+    }
+}
+
 /// An axis that claims to be one value, in chunks of a list, as earlier versions stored them:
 /// libhdf5 would read for ever.
 #[test]

@@ -61,7 +61,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         return verify_trace(args, program);
     }
     refuse_unfinished(&args.map)?;
-    let map = MapFile::open(&args.map)?;
+    let map = MapFile::open_to_check(&args.map)?;
     let effort = Effort {
         cells: args.cells,
         tiles: args.tiles,

@@ -65,7 +65,25 @@ impl MapFile {
     /// When the file is missing, is open for writing in another program, is no HDF5 file or no map,
     /// has another format version, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        Self::read_file(path).map_err(|error| match error {
+        let file = open::to_read(path, StoreError::not_a_map);
+        let own = !file.as_ref().is_ok_and(is_of_another_version);
+        let read = file.and_then(|file| Self::read_file(path, file));
+        read.map_err(|error| match error {
+            // This version reads what it has sealed, unless that has changed.
+            StoreError::NotAMap { path, why } if own && seal::is_there(&path) => {
+                StoreError::DamagedMap { path, why }
+            }
+            other => other,
+        })
+    }
+
+    /// Opens a map to check it. What cannot be read is compared with its seal, whole, so that a
+    /// damaged map of any version is told from what this version does not know.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open).
+    pub fn open_to_check(path: &Path) -> Result<Self, StoreError> {
+        Self::open(path).map_err(|error| match error {
             StoreError::NotAMap { path, why } if is_changed(&path) => {
                 StoreError::DamagedMap { path, why }
             }
@@ -73,8 +91,7 @@ impl MapFile {
         })
     }
 
-    fn read_file(path: &Path) -> Result<Self, StoreError> {
-        let file = open::to_read(path, StoreError::not_a_map)?;
+    fn read_file(path: &Path, file: File) -> Result<Self, StoreError> {
         let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
             let of_trace = one_number::<i32>(&file, schema::trace::FORMAT_VERSION);
             let why = match of_trace {
@@ -476,6 +493,12 @@ impl MapFile {
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
     }
+}
+
+/// Whether a map names another version of the program that made it.
+fn is_of_another_version(file: &File) -> bool {
+    let version = text(file, root::PROGRAM_VERSION);
+    version.is_ok_and(|version| version != env!("CARGO_PKG_VERSION"))
 }
 
 /// Whether a file has the seal of a map, and its bytes are not those that were sealed.

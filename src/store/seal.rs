@@ -57,6 +57,12 @@ fn last(file: &mut File) -> io::Result<(u64, [u8; LENGTH])> {
     Ok((before, found))
 }
 
+/// Whether a file ends as a sealed one does, whatever its bytes are.
+pub(super) fn is_there(path: &Path) -> bool {
+    let end = regular::open(path).and_then(|mut file| Ok(last(&mut file)?));
+    end.is_ok_and(|(_, found)| found.starts_with(BEFORE))
+}
+
 /// Checks a file against its seal.
 ///
 /// Once `stop` is set, reading ends and the answer is meaningless.
