@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use program::{Folder, LONGEST, Started, err, expect, out};
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use slipmap::linear::lobes::LobeControl;
 use slipmap::store::{MapFile, TraceFile};
 use slipmap::sweep::Field;
@@ -580,6 +581,16 @@ fn kept_copy() -> (Folder, PathBuf) {
 
 const AGAIN: [&str; 5] = ["reproduce", "--quick", "--json", "--keep", "kept"];
 
+/// A kept picture as a version that draws otherwise would have left it.
+fn drawn_by_an_earlier_version(drawn: &str) -> String {
+    let (svg, line) = drawn.rsplit_once("<!--").unwrap();
+    let svg = svg.replace("</svg>", "<!-- otherwise --></svg>");
+    let (about, _) = line.rsplit_once(": ").unwrap();
+    let digits = |byte: &u8| format!("{byte:02x}");
+    let checksum: String = Sha256::digest(&svg).iter().map(digits).collect();
+    format!("{svg}<!--{about}: {checksum} -->\n")
+}
+
 /// After an interruption the same command goes on: maps that are there are kept, and the claims are
 /// those of one run. After completion it says the same once more.
 #[test]
@@ -611,12 +622,16 @@ fn the_same_command_goes_on_with_what_is_kept() {
     }
     child.signal("-INT");
     expect(&child.ended(), 130, "the same command goes on from there");
+    let picture = kept.join("fig2b.svg");
+    let drawn = std::fs::read_to_string(&picture).unwrap();
     for _ in 0..2 {
+        std::fs::write(&picture, drawn_by_an_earlier_version(&drawn)).unwrap();
         let again = folder.run(&AGAIN);
         assert_eq!(again.status.code(), Some(0), "{}", err(&again));
         let told: Value = serde_json::from_str(&out(&again)).unwrap();
         assert_eq!(told["claims"], runs().json["claims"]);
         assert_eq!(names.map(|name| written(name).unwrap()), before);
+        assert_eq!(std::fs::read_to_string(&picture).unwrap(), drawn);
     }
     let names = |path: &Path| {
         let entries = std::fs::read_dir(path).unwrap();
@@ -632,7 +647,7 @@ fn the_same_command_goes_on_with_what_is_kept() {
 fn what_took_the_place_of_a_kept_file_is_refused() {
     let (folder, kept) = kept_copy();
     for (name, by) in [
-        // Another motion, another map, a picture that somebody has worked on.
+        // Another motion, another map, another picture.
         ("fig3a.h5", Some("fig3b.h5")),
         ("fig2a.h5", Some("fig2b.h5")),
         ("fig3a.svg", Some("fig3b.svg")),
@@ -647,4 +662,12 @@ fn what_took_the_place_of_a_kept_file_is_refused() {
         assert!(std::fs::read(&path).unwrap() == other, "{name}");
         std::fs::write(&path, before).unwrap();
     }
+    // A picture that somebody has worked on.
+    let path = kept.join("fig2b.svg");
+    let drawn = std::fs::read_to_string(&path).unwrap();
+    let mine = drawn.replacen("</svg>", "<title>mine</title></svg>", 1);
+    std::fs::write(&path, &mine).unwrap();
+    let says = "kept/fig2b.svg is already there, and not of this run";
+    expect(&folder.run(&AGAIN), 2, says);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), mine);
 }

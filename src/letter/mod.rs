@@ -18,10 +18,12 @@
 //! - `one_variable`: integrals and minima of functions of one variable
 //! - `claim`: a claim, the values by which it is judged, its verdict
 //! - `page`: the page; the only file that imports maud
+//! - `kept_picture`: pictures in a folder that is kept, and whether one there is such a picture
 //! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
 //!   and read
 
 mod claim;
+mod kept_picture;
 mod limits;
 mod measures;
 mod motions;

@@ -8,6 +8,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::LetterError;
+use super::kept_picture::{is_kept, marked};
 use crate::maps::maker::{self, Job};
 use crate::model::stop::Stop;
 use crate::report::picture::{self, PictureOptions};
@@ -160,7 +161,7 @@ impl<'a> Workshop<'a> {
         let map = MapFile::open(&path)?;
         let options = PictureOptions::default();
         let drawn = picture::draw(&map, &path.with_extension("svg"), &options)?;
-        self.keep(source, (title, text, "run"), drawn)?;
+        self.keep(source, (title, text, "run"), drawn.bytes())?;
         Ok(map)
     }
 
@@ -196,7 +197,11 @@ impl<'a> Workshop<'a> {
         let options = PictureOptions::default();
         let picture = path.with_extension("svg");
         let drawn = picture::draw_trace((&spec, &trace), &path, &picture, &options)?;
-        self.keep(source, (spec.title.clone(), text, "simulate"), drawn)?;
+        self.keep(
+            source,
+            (spec.title.clone(), text, "simulate"),
+            drawn.bytes(),
+        )?;
         Ok((spec, trace))
     }
 
@@ -213,8 +218,8 @@ impl<'a> Workshop<'a> {
         let foreign = match there(&data) {
             // What is written first is there first.
             _ if !same => [path.clone(), data, picture].into_iter().find(|p| there(p)),
-            false => Some(picture).filter(|picture| there(picture)),
-            true => (!is_of(&data, source.name, &text)?).then_some(data),
+            true if !is_of(&data, source.name, &text)? => Some(data),
+            _ => Some(picture).filter(|p| there(p) && !is_kept(p, source.name)),
         };
         match foreign {
             Some(path) => Err(LetterError::Foreign { path }),
@@ -235,9 +240,7 @@ impl<'a> Workshop<'a> {
     fn written(&self, source: &Source, text: &str) -> Result<PathBuf, LetterError> {
         let (path, same) = self.place(source)?;
         if !same {
-            let output = Output::claim(&path)?;
-            std::fs::write(output.part(), text).map_err(LetterError::io("write", &path))?;
-            output.commit()?;
+            put(&path, text.as_bytes())?;
         }
         Ok(path.with_extension("h5"))
     }
@@ -247,9 +250,9 @@ impl<'a> Workshop<'a> {
         &mut self,
         source: &Source,
         (title, text, command): (String, String, &str),
-        picture: picture::Picture,
+        picture: &[u8],
     ) -> Result<(), LetterError> {
-        let svg = String::from_utf8_lossy(picture.bytes()).into_owned();
+        let svg = String::from_utf8_lossy(picture).into_owned();
         let shipped = text == source.text;
         let (name, folder) = (source.name, self.folder.display());
         let file = match () {
@@ -259,10 +262,12 @@ impl<'a> Workshop<'a> {
         };
         if self.kept {
             let path = self.folder.join(format!("{name}.svg"));
-            match holds(&path, picture.bytes()) {
-                Some(true) => {}
-                Some(false) => return Err(LetterError::Foreign { path }),
-                None => picture.save()?,
+            let bytes = marked(picture, name);
+            match there(&path) {
+                true if holds(&path, &bytes) => {}
+                true if holds(&path, &bytes) => {}
+                true if !is_kept(&path, name) => return Err(LetterError::Foreign { path }),
+                _ => put(&path, &bytes)?,
             }
         }
         let figure = Figure {
@@ -295,11 +300,17 @@ fn is_of(path: &Path, name: &'static str, text: &str) -> Result<bool, LetterErro
     Ok(map.is_ok_and(|map| map.root_text(root::PLAN_HASH) == Some(hash)))
 }
 
-/// Whether a file holds just these bytes; none where there is none.
-fn holds(path: &Path, bytes: &[u8]) -> Option<bool> {
-    let itself = path.symlink_metadata().ok()?.is_file();
-    let read = || regular::read(path, bytes.len() as u64);
-    Some(itself && read().is_ok_and(|found| found == bytes))
+/// Writes a whole file.
+fn put(path: &Path, bytes: &[u8]) -> Result<(), LetterError> {
+    let output = Output::claim(path)?;
+    std::fs::write(output.part(), bytes).map_err(LetterError::io("write", path))?;
+    Ok(output.commit()?)
+}
+
+/// Whether a file holds just these bytes.
+fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let found = regular::read(path, bytes.len() as u64);
+    found.is_ok_and(|found| found == bytes)
 }
 
 /// The values of the axes before a plane.
