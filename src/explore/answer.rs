@@ -43,7 +43,7 @@ pub enum Request {
 }
 
 impl Request {
-    /// All of them.
+    /// The requests that are answered.
     pub const ALL: [Self; 6] = [
         Self::Chart,
         Self::Point,

@@ -65,7 +65,7 @@ pub struct Late<'c> {
     pub latency: f64,
 }
 
-/// As [`eigenvalues`], with latency.
+/// The eigenvalues of [`eigenvalues`] for feedback with latency.
 ///
 /// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ), and s = A z +
 /// R s(t − τ). Its history over τ + δ is collocated, with barycentric values inside.

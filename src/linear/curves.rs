@@ -46,7 +46,7 @@ pub enum CurveKind {
 }
 
 impl CurveKind {
-    /// All of them.
+    /// The kinds of curves.
     pub const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
 
     /// Its place in [`CurveKind::ALL`].

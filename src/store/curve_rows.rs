@@ -25,7 +25,7 @@ pub(super) enum Per {
 }
 
 impl Per {
-    /// All of them.
+    /// The dimensions of columns.
     pub(super) const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
 
     /// The name of the dimension.

@@ -76,7 +76,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
 /// The first bytes of a regular file, `most` or as many as it has.
 ///
 /// # Errors
-/// As [`open`].
+/// Where [`open`] does not open the file, or it cannot be read.
 pub fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     let mut bytes = Vec::new();
     open(path)?.take(most).read_to_end(&mut bytes)?;

@@ -77,7 +77,7 @@ impl Stretch {
 /// The stretches of one region, by rising gain and delay. Never empty.
 pub(super) type Stretches = Vec<Stretch>;
 
-/// All regions of the box that a sampled gain crosses, by their shortest delay; only some of them
+/// The regions of the box that a sampled gain crosses, by their shortest delay; only some of them
 /// once `stop` is set.
 pub(super) fn stable_regions(search: &Search<impl Family>, stop: &Stop) -> Vec<Stretches> {
     let gains = sampled_gains(search, stop);

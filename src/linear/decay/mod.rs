@@ -88,7 +88,7 @@ pub fn trace(
     trace_in(&plane, sigma)
 }
 
-/// As [`trace`], for any characteristic function over a plane.
+/// The curves of [`trace`] for any characteristic function over a plane.
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.

@@ -71,7 +71,7 @@ impl<'a> SystemPlane<'a> {
         }
     }
 
-    /// The same plane, but once `stop` is set nothing is counted in it any more.
+    /// This plane, in which nothing is counted any more once `stop` is set.
     #[must_use]
     pub fn heeding(self, stop: &Stop) -> Self {
         let stop = stop.clone();

@@ -162,14 +162,14 @@ impl RootCounter {
         }
     }
 
-    /// The same counter, but with latency the work of a cell is bounded, by a number of steps:
+    /// This counter with the work of a cell bounded where there is latency, by a number of steps:
     /// once these are taken every number of roots is undecided, until [`RootCounter::begin`].
     #[must_use]
     pub fn bounded(self) -> Self {
         self.allowing(MOST_STEPS_OF_A_CELL)
     }
 
-    /// The same with another number of steps.
+    /// This counter with the work of a cell bounded by `most` steps, see [`RootCounter::bounded`].
     #[must_use]
     pub(in crate::linear) fn allowing(self, most: u64) -> Self {
         let budget = Budget::of(most);
@@ -192,7 +192,7 @@ impl RootCounter {
         self.budget.spent()
     }
 
-    /// The same counter, to which every number of roots is undecided once `stop` is set.
+    /// This counter, to which every number of roots is undecided once `stop` is set.
     #[must_use]
     pub fn heeding(self, stop: &Stop) -> Self {
         let stop = stop.clone();

@@ -194,7 +194,7 @@ impl Shifted {
         }
     }
 
-    /// As [`Shifted::phase`], as narrow as the errors of the coefficients allow.
+    /// The phase of [`Shifted::phase`], as narrow as the errors of the coefficients allow.
     #[cold]
     fn phase_exactly(&self, omega: f64, error: f64) -> Option<Angle> {
         let [first, second] = self

@@ -77,7 +77,7 @@ impl System {
         feedback.map_or(&self.p, |of| &of.open).time_unit()
     }
 
-    /// The same system with its delay and latency in units of `unit`, a power of two: a root λ of
+    /// This system with its delay and latency in units of `unit`, a power of two: a root λ of
     /// this one is a root λ·`unit` there.
     #[must_use]
     pub fn in_unit(&self, unit: f64) -> Self {

@@ -93,7 +93,7 @@ pub(super) struct CurvesQuery {
     pub x: String,
     /// The axis from bottom to top.
     pub y: String,
-    /// As that of a window.
+    /// Where the plane lies along the other axes, as of a window.
     #[serde(default)]
     pub at: String,
 }

@@ -18,7 +18,7 @@ macro_rules! catalogue {
         }
 
         impl $Name {
-            /// All of them, in order.
+            /// The rows of the table, in order.
             pub const ALL: [Self; [$(stringify!($Value)),+].len()] = [$(Self::$Value),+];
 
             const fn row(self) -> &'static $Row {

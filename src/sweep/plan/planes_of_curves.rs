@@ -35,7 +35,7 @@ pub enum NoBoundaries {
     TooMany {
         /// The planes.
         planes: u64,
-        /// As many are traced without being asked for.
+        /// The most planes that are traced without being asked for.
         most: u64,
     },
 }

@@ -20,8 +20,8 @@ const DELAYS_PER_TILE: usize = 1 << 17;
 /// Lines of delays are cut only at multiples of this. Tracking restarts there, so that no value
 /// depends on the tiles.
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
-/// The same for critical velocities that start from their neighbours; a divisor of the block of
-/// roots.
+/// Delays at a multiple of which critical velocities do not start from their neighbours; a divisor
+/// of the block of roots.
 const BLOCK_OF_VC: usize = crate::critical::along_delay::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// Cells in a tile, roughly. Tiles take about the same time, whatever is computed.

@@ -36,7 +36,7 @@ impl Budget {
         self.left.get() == 0
     }
 
-    /// All steps that were taken.
+    /// The number of steps taken.
     pub(in super::super) fn spent(&self) -> u64 {
         self.spent.get()
     }

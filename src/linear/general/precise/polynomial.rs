@@ -104,7 +104,7 @@ impl Precise {
         all
     }
 
-    /// The same polynomial, with its errors.
+    /// A polynomial in f64 with its errors, its numbers with more digits.
     pub(super) fn of(of: &Polynomial) -> Self {
         let mut all = Self::ZERO;
         for (k, (&value, &error)) in of.coefficients().iter().zip(of.errors()).enumerate() {

@@ -79,7 +79,7 @@ impl<'s> Resolver<'s> {
         self.system
     }
 
-    /// All crossings at `switch`, no more than two; none of them where F has no zeros there after
+    /// The crossings at `switch`, no more than two; none of them where F has no zeros there after
     /// all. None where that stays open.
     #[cold]
     #[inline(never)]

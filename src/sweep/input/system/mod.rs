@@ -92,7 +92,7 @@ pub enum SpeedUnit {
 }
 
 impl SpeedUnit {
-    /// All of them.
+    /// The units of speeds, by name.
     pub const ALL: [Self; 3] = [
         Self::RevolutionsPerMinute,
         Self::Hertz,
