@@ -14,6 +14,7 @@ use slipmap::critical::along_delay::{BLOCK, critical_velocities};
 use slipmap::critical::{
     CriticalVelocity, Method, Problem, RampOptions, Transition, by_simulation, critical_velocity,
 };
+use slipmap::model::Feedback;
 use slipmap::slip::motion::Accuracy;
 
 #[path = "../tests/common/chance_problem.rs"]
@@ -108,7 +109,10 @@ fn lines(cells: usize) {
         let one = chance.problem();
         let line: Vec<Problem> = (0..DELAYS)
             .map(|i| Problem {
-                tau: 0.05 + 4.95 * i as f64 / (DELAYS - 1) as f64,
+                feedback: Feedback {
+                    tau: 0.05 + 4.95 * i as f64 / (DELAYS - 1) as f64,
+                    ..one.feedback
+                },
                 ..one.clone()
             })
             .collect();
@@ -165,9 +169,9 @@ fn row<'t>(name: &str, times: impl Iterator<Item = (&'t Timed, f64)>) {
         times.len(),
         times[times.len() / 2].1,
         p.law.kind(),
-        p.alpha_v,
-        p.alpha_n,
-        p.tau,
+        p.feedback.gains.alpha_v,
+        p.feedback.gains.alpha_n,
+        p.feedback.tau,
         slowest.found.transition.name(),
     );
 }

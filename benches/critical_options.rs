@@ -15,6 +15,7 @@ use std::time::Instant;
 use slipmap::critical::along_delay::critical_velocities;
 use slipmap::critical::switch_on::{Phase, Scan, windows};
 use slipmap::critical::{CriticalVelocity, Options, Problem, Transition, critical_velocity};
+use slipmap::model::Feedback;
 use slipmap::slip::motion::Accuracy;
 
 #[path = "../tests/common/chance_problem.rs"]
@@ -91,7 +92,10 @@ fn searches(table: &str, cells: usize) -> Vec<Search> {
     };
     let line = |one: Problem| {
         let at = |i: usize| Problem {
-            tau: one.tau * (1.0 + APART * i as f64),
+            feedback: Feedback {
+                tau: one.feedback.tau * (1.0 + APART * i as f64),
+                ..one.feedback
+            },
             ..one.clone()
         };
         Search::Line((0..LINE).map(at).collect())

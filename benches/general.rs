@@ -14,7 +14,7 @@ use slipmap::linear::row::Delays;
 use slipmap::linear::status::CERTIFIED;
 use slipmap::linear::track::{RootTracker, Work};
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::Groups;
+use slipmap::model::{Channel, Groups};
 
 const ROUNDS: usize = 15;
 const LONGEST: f64 = 10.0;
@@ -44,7 +44,14 @@ struct Line {
 
 impl Line {
     fn system(&self) -> System {
-        System::feedback(self.open, self.gain, self.memory, self.latency)
+        System::feedback(
+            self.open,
+            self.gain,
+            Channel {
+                memory: self.memory,
+                latency: self.latency,
+            },
+        )
     }
 }
 

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use slipmap::linear::margins::{self, Beyond, Case, Limits, Margins, Setting, SlidingLaw};
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
+use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator, Table};
 
 const SETTINGS: usize = 2000;
 const ROUNDS: usize = 5;
@@ -153,24 +153,22 @@ fn with_decay(setting: &Setting) {
 /// Mean times of margins beyond the letter.
 fn beyond(settings: &[Setting]) {
     let nothing = Beyond::default();
-    let memory = Beyond {
-        memory: 0.3,
+    let through = |memory, latency| Beyond {
+        channel: Channel { memory, latency },
         ..nothing
     };
-    let latency = Beyond {
-        latency: 0.2,
-        ..nothing
-    };
+    let (memory, latency) = (through(0.3, 0.0), through(0.0, 0.2));
     let lags = Beyond {
-        load_lag: 0.1,
-        velocity_lag: 0.2,
-        sensor_lag: 0.05,
+        lags: Lags {
+            load: 0.1,
+            velocity: 0.2,
+            sensor: 0.05,
+        },
         ..nothing
     };
     let all = Beyond {
-        memory: 0.3,
-        latency: 0.2,
-        ..lags
+        lags: lags.lags,
+        ..through(0.3, 0.2)
     };
     println!("{BEYOND_SETTINGS} stable settings of each kind, mean times");
     for (name, beyond) in [

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use program::{Folder, err, expect, out};
 use serde_json::Value;
-use slipmap::model::FrictionLaw;
+use slipmap::model::{Feedback, FrictionLaw};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
 use slipmap::slip::outcome::{Limits, Outcome};
@@ -60,11 +60,7 @@ fn survival_at_the_stop_phase_is_reentrant() {
         let p = Parameters {
             law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
             velocity_unit: 1.0,
-            alpha_v: -0.33,
-            alpha_n: 0.0,
-            tau: 4.15,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(-0.33, 0.0, 4.15),
             v0,
             switch_on: 0.0,
         };

@@ -17,8 +17,8 @@ use program::{Folder, err, out};
 use serde_json::Value;
 use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
 use slipmap::linear::general::{Polynomial, System};
-use slipmap::model::Groups;
 use slipmap::model::stop::Stop;
+use slipmap::model::{Channel, Groups};
 use slipmap::store::MapFile;
 use walk::Walk;
 
@@ -178,7 +178,14 @@ impl Problem {
     fn system(&self, gain: f64) -> System {
         let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
         let (open, fed) = (polynomial(&self.open), polynomial(&self.fed(gain)));
-        System::feedback(open, fed, self.memory, self.latency)
+        System::feedback(
+            open,
+            fed,
+            Channel {
+                memory: self.memory,
+                latency: self.latency,
+            },
+        )
     }
 
     fn walk(&self, gain: f64, tau: f64) -> Walk {

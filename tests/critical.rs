@@ -15,7 +15,7 @@ use slipmap::critical::{
     by_simulation, critical_velocity,
 };
 use slipmap::model::stop::Stop;
-use slipmap::model::{FrictionLaw, Table};
+use slipmap::model::{Feedback, FrictionLaw, Table};
 use slipmap::slip::motion::Accuracy;
 
 #[path = "common/chance_problem.rs"]
@@ -26,11 +26,7 @@ fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
     Problem {
         law,
         velocity_unit: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: Stop::default(),
         options: Options::default(),
     }
@@ -564,7 +560,13 @@ fn irregular_ends_are_decided_where_ramps_agree() {
 
 /// The same problem at other delays.
 fn along(one: &Problem, delays: impl Iterator<Item = f64>) -> Vec<Problem> {
-    let at = |tau| Problem { tau, ..one.clone() };
+    let at = |tau| Problem {
+        feedback: Feedback {
+            tau,
+            ..one.feedback
+        },
+        ..one.clone()
+    };
     delays.map(at).collect()
 }
 
@@ -741,7 +743,7 @@ fn a_search_stops_anywhere() {
             _ => chance.problem_of_other_laws(),
         };
         // Long delays make long searches.
-        asked.tau *= if i % 3 == 0 { 40.0 } else { 1.0 };
+        asked.feedback.tau *= if i % 3 == 0 { 40.0 } else { 1.0 };
         let flag = Arc::new(AtomicBool::new(i % 10 == 0));
         asked.stop = Stop::when(&flag);
         let wait = Duration::from_micros(chance.below(2000));

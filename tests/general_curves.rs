@@ -15,8 +15,8 @@ use slipmap::linear::curves::{
 use slipmap::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use slipmap::linear::general::curves::trace;
 use slipmap::linear::general::{Polynomial, RootCounter, Setting, System, SystemPlane};
-use slipmap::model::Groups;
 use slipmap::model::stop::Stop;
+use slipmap::model::{Channel, Groups};
 
 fn polynomial(coefficients: &[f64]) -> Polynomial {
     Polynomial::new(coefficients).unwrap()
@@ -485,7 +485,8 @@ fn delay_and_latency() {
     let (b, a_v, a_n) = (-0.1, -0.4, -0.2);
     let open = polynomial(&[1.0, b, 1.0]);
     let gain = polynomial(&[a_n + a_v * b, a_v]);
-    let at = |tau: f64, latency: f64| setting(System::feedback(open, gain, 0.0, latency), tau);
+    let groups = Groups::new(b, a_v, a_n);
+    let at = |tau: f64, latency: f64| setting(letter(groups, 0.0, latency), tau);
     let window = Window {
         p: 0.05..=9.0,
         q: 0.0..=4.0,
@@ -526,7 +527,14 @@ fn delay_and_latency() {
     };
     lines("late feedback", &window, &|a_v| {
         let gain = polynomial(&[a_v * -0.5, a_v]);
-        System::feedback(polynomial(&[1.0, -0.5, 1.0]), gain, 0.3, 0.4)
+        System::feedback(
+            polynomial(&[1.0, -0.5, 1.0]),
+            gain,
+            Channel {
+                memory: 0.3,
+                latency: 0.4,
+            },
+        )
     });
 }
 

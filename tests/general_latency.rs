@@ -15,7 +15,7 @@ use slipmap::linear::general::{
     DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
 };
 use slipmap::linear::{Direction, MarginalTolerance};
-use slipmap::model::{Groups, known_cases};
+use slipmap::model::{Channel, Groups, known_cases};
 
 /// Ends of stable intervals and crossings agree to this, relative.
 const ENDS: f64 = 1e-9;
@@ -267,7 +267,11 @@ fn without_latency_nothing_changes() {
 fn degenerate_cases_say_so() {
     let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
     let system = |open: &[f64], gain: &[f64], memory, latency| {
-        System::feedback(polynomial(open), polynomial(gain), memory, latency)
+        System::feedback(
+            polynomial(open),
+            polynomial(gain),
+            Channel { memory, latency },
+        )
     };
     // B(0) = 0: a root at 0 at every delay and latency.
     let origin = system(&[0.0, 1.0, 0.4, 1.0], &[0.5, 0.2], 0.3, 0.7);
@@ -430,7 +434,14 @@ fn a_search_that_is_given_up_tells_no_margin() {
     // (b, a_n) = (0.1, 0.1) with the memory 0.3, stable without latency.
     let polynomial = |c: &[f64]| Polynomial::new(c).unwrap();
     let (open, gain) = (polynomial(&[1.0, 0.1, 1.0]), polynomial(&[0.1]));
-    let system = System::feedback(open, gain, 0.3, 0.0);
+    let system = System::feedback(
+        open,
+        gain,
+        Channel {
+            memory: 0.3,
+            latency: 0.0,
+        },
+    );
     let here = DelayLine::of(&system).count(1e5, MarginalTolerance::default());
     assert!(here.stable());
     let margin = |tau: f64| system.latency_margin(tau).expect("feedback");

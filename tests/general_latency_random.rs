@@ -13,6 +13,7 @@ use slipmap::linear::general::{
     DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
 };
 use slipmap::linear::{Direction, MarginalTolerance};
+use slipmap::model::Channel;
 use walk::Walk;
 
 fn cases(usual: u64) -> u64 {
@@ -77,7 +78,14 @@ impl Late {
     fn system(&self) -> System {
         let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
         let (open, gain) = (polynomial(&self.open), polynomial(&self.gain));
-        System::feedback(open, gain, self.memory, self.latency)
+        System::feedback(
+            open,
+            gain,
+            Channel {
+                memory: self.memory,
+                latency: self.latency,
+            },
+        )
     }
 
     fn at(&self, z: Complex64) -> Complex64 {

@@ -5,8 +5,8 @@ use slipmap::critical::limit::CoulombLimit;
 use slipmap::critical::{CriticalVelocity, Options, Problem, critical_velocity};
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::rightmost::Rightmost;
-use slipmap::model::FrictionLaw;
 use slipmap::model::stop::Stop;
+use slipmap::model::{Feedback, FrictionLaw};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::Accuracy;
@@ -188,11 +188,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
     Problem {
         law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
         velocity_unit: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: Stop::default(),
         options: Options::default(),
     }
@@ -229,11 +225,7 @@ fn coulomb(gamma: f64, tau: f64) -> Problem {
     Problem {
         law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
         velocity_unit: 1.0,
-        alpha_v: 0.0,
-        alpha_n: -2.0 * gamma / (0.5 * tau),
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(0.0, -2.0 * gamma / (0.5 * tau), tau),
         stop: Stop::default(),
         options: Options::default(),
     }
@@ -262,7 +254,12 @@ fn stick_slip_comes_back_beyond_critical_damping() {
                 found.decided && found.vc == 0.0,
                 "{gamma} {below} {found:?}"
             );
-            let rightmost = Rightmost::at(problem.groups(1.0), problem.tau, 1, problem.count(1.0));
+            let rightmost = Rightmost::at(
+                problem.groups(1.0),
+                problem.feedback.tau,
+                1,
+                problem.count(1.0),
+            );
             assert_eq!(rightmost.roots[0].lambda.im, 0.0, "{gamma} {below}");
         }
         let found = critical_velocity(&coulomb(gamma, 1.01 * edge));

@@ -12,14 +12,18 @@ use num_complex::Complex64;
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, System};
 use slipmap::linear::margins::{self, Beyond, Case, Margins, Radius, Setting, SlidingLaw};
-use slipmap::model::{Control, FrictionLaw, Groups, Oscillator};
+use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator};
 
 const NOTHING: Beyond = Beyond {
-    memory: 0.0,
-    latency: 0.0,
-    load_lag: 0.0,
-    velocity_lag: 0.0,
-    sensor_lag: 0.0,
+    channel: Channel {
+        memory: 0.0,
+        latency: 0.0,
+    },
+    lags: Lags {
+        load: 0.0,
+        velocity: 0.0,
+        sensor: 0.0,
+    },
 };
 
 /// The number of roots right of Re λ = −σ, of a system written down here; none where one is on that
@@ -28,14 +32,13 @@ fn roots(Setting { groups, tau, decay }: Setting, beyond: &Beyond) -> Option<u64
     let Groups { b, a_v, a_n } = groups;
     let of = |c: &[f64]| Polynomial::new(c).unwrap();
     let times = |p: &Polynomial, q: &Polynomial| p.times(q).unwrap();
-    let [load, velocity, sensor] =
-        [beyond.load_lag, beyond.velocity_lag, beyond.sensor_lag].map(|time| of(&[1.0, time]));
+    let [load, velocity, sensor] = beyond.lags.times().map(|time| of(&[1.0, time]));
     let open = times(
         &of(&[1.0, b, 1.0]),
         &times(&load, &times(&velocity, &sensor)),
     );
     let gain = times(&of(&[a_n]), &velocity).plus(&times(&of(&[a_v * b, a_v]), &load), 1.0);
-    let system = System::feedback(open, gain, beyond.memory, beyond.latency);
+    let system = System::feedback(open, gain, beyond.channel);
     if b == 0.0 && decay == 0.0 {
         // Without damping P has zeros on the axis, which the count along it does not like.
         let line = DelayLine::of(&system);
@@ -57,27 +60,27 @@ fn stable(setting: Setting, beyond: &Beyond) -> bool {
 fn beyond(chance: &mut Chance, kind: usize) -> Beyond {
     let memory = chance.between(-0.9, 0.9);
     let latency = chance.between(0.0, 1.0);
-    let [load_lag, velocity_lag, sensor_lag] = [(); 3].map(|()| chance.between(0.0, 0.4));
-    let lags = Beyond {
-        load_lag,
-        velocity_lag,
-        sensor_lag,
+    let [load, velocity, sensor] = [(); 3].map(|()| chance.between(0.0, 0.4));
+    let lags = Lags {
+        load,
+        velocity,
+        sensor,
+    };
+    let through = |memory, latency| Beyond {
+        channel: Channel { memory, latency },
         ..NOTHING
     };
     match kind % 5 {
-        0 => Beyond { memory, ..NOTHING },
-        1 => Beyond { latency, ..NOTHING },
-        2 => lags,
-        3 => Beyond {
-            memory,
-            latency: 0.3 * latency,
-            ..NOTHING
-        },
+        0 => through(memory, 0.0),
+        1 => through(0.0, latency),
+        2 => Beyond { lags, ..NOTHING },
+        3 => through(memory, 0.3 * latency),
         _ => Beyond {
-            memory: 0.5 * memory,
-            latency: 0.3 * latency,
-            sensor_lag: 0.0,
-            ..lags
+            lags: Lags {
+                sensor: 0.0,
+                ..lags
+            },
+            ..through(0.5 * memory, 0.3 * latency)
         },
     }
 }
@@ -291,12 +294,12 @@ fn negative_loop(setting: Setting, beyond: &Beyond, omega: f64) -> Complex64 {
     let Groups { b, a_v, a_n } = groups;
     let lambda = Complex64::new(-decay, omega);
     let delayed = (-lambda * tau).exp();
-    let late = (-lambda * beyond.latency).exp();
+    let late = (-lambda * beyond.channel.latency).exp();
     let lag = |time: f64| 1.0 + time * lambda;
-    let load = a_n / lag(beyond.load_lag);
-    let velocity = a_v * (b + lambda) / lag(beyond.velocity_lag);
-    let acting = (load + velocity) / lag(beyond.sensor_lag) * late * (1.0 - delayed);
-    acting / ((lambda * (lambda + b) + 1.0) * (1.0 - beyond.memory * delayed))
+    let load = a_n / lag(beyond.lags.load);
+    let velocity = a_v * (b + lambda) / lag(beyond.lags.velocity);
+    let acting = (load + velocity) / lag(beyond.lags.sensor) * late * (1.0 - delayed);
+    acting / ((lambda * (lambda + b) + 1.0) * (1.0 - beyond.channel.memory * delayed))
 }
 
 /// Zeros of `f` on a grid that is dense at low frequencies, by halvings.
@@ -380,7 +383,14 @@ fn latency_margins_with_a_required_decay_are_where_roots_come_in() {
     let (mut finite, mut none) = (0, 0);
     for (setting, beyond) in settings(37, 60, 0.05) {
         let margin = search.latency(&Case::beyond(setting, beyond));
-        let with = |latency: f64| roots(setting, &Beyond { latency, ..beyond });
+        let late = |latency: f64| Beyond {
+            channel: Channel {
+                latency,
+                ..beyond.channel
+            },
+            ..beyond
+        };
+        let with = |latency: f64| roots(setting, &late(latency));
         assert!(!margin.is_nan(), "{setting:?} {beyond:?}");
         if margin == 0.0 {
             none += 1;
@@ -421,7 +431,7 @@ fn in_box(chance: &mut Chance, radius: f64) -> [f64; 3] {
 /// D over the size of its terms.
 fn relative(setting: Setting, beyond: &Beyond, omega: f64) -> f64 {
     let lambda = Complex64::new(-setting.decay, omega);
-    let kept = 1.0 - beyond.memory * (-lambda * setting.tau).exp();
+    let kept = 1.0 - beyond.channel.memory * (-lambda * setting.tau).exp();
     let own = (lambda * (lambda + setting.groups.b) + 1.0) * kept;
     let acting = negative_loop(setting, beyond, omega) * own;
     (own - acting).norm() / (1.0 + own.norm() + acting.norm())
@@ -563,7 +573,10 @@ fn a_friction_law_leads_from_one_velocity_to_another() {
 #[test]
 fn roots_that_accumulate_end_everything() {
     let beyond = Beyond {
-        memory: 0.4,
+        channel: Channel {
+            memory: 0.4,
+            latency: 0.0,
+        },
         ..NOTHING
     };
     let setting = |tau: f64, decay: f64| Setting {

@@ -13,7 +13,7 @@ use signal::{exponent, samples, slope};
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::friction::Kind;
-use slipmap::model::{FrictionLaw, Groups, Table};
+use slipmap::model::{Feedback, FrictionLaw, Groups, Table};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
 use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary};
 use slipmap::slip::watch::{REPEATED, follow};
@@ -29,11 +29,7 @@ fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, switch_on: f64) 
     Parameters {
         law,
         velocity_unit: 1.0,
-        alpha_v: gains.0,
-        alpha_n: gains.1,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(gains.0, gains.1, tau),
         v0,
         switch_on,
     }
@@ -103,7 +99,7 @@ fn the_events_of_the_letters_figure_3() {
         for (mark, expected) in marks.iter().zip(expected) {
             assert!((mark - expected).abs() < 1e-8, "{marks:?}");
         }
-        if p.alpha_n != 0.0 {
+        if p.feedback.gains.alpha_n != 0.0 {
             assert!((marks[3] - 0.5).abs() < 1e-10, "{marks:?}");
         }
         // Continuous sliding afterwards.
@@ -246,11 +242,11 @@ fn small_deviations_grow_and_decay_as_linear_theory_says() {
 fn deviation_follows_linear_theory(p: &Parameters) -> Option<bool> {
     let groups = Groups::new(
         p.law.mu_prime(p.v0),
-        p.alpha_v,
-        p.law.mu_k(p.v0) * p.alpha_n,
+        p.feedback.gains.alpha_v,
+        p.law.mu_k(p.v0) * p.feedback.gains.alpha_n,
     );
-    let count = Crossings::of(groups).count(p.tau, MarginalTolerance::default());
-    let rightmost = Rightmost::at(groups, p.tau, 2, count);
+    let count = Crossings::of(groups).count(p.feedback.tau, MarginalTolerance::default());
+    let rightmost = Rightmost::at(groups, p.feedback.tau, 2, count);
     let [root, next] = rightmost.roots[..] else {
         return None;
     };
@@ -384,7 +380,7 @@ fn energy_is_accounted_for() {
                 // n − 1 is α_n times the difference that α_v acts on.
                 let power = |s| {
                     let (_, a, n) = step.state(s);
-                    a * (v0 + p.alpha_v * (n - 1.0) / p.alpha_n)
+                    a * (v0 + p.feedback.gains.alpha_v * (n - 1.0) / p.feedback.gains.alpha_n)
                 };
                 let friction = |s| {
                     let (u, _, n) = step.state(s);
@@ -523,12 +519,12 @@ fn nothing_breaks_it() {
         let (p, u, a) = any_case(&mut chance);
         let groups = Groups::new(
             p.law.mu_prime(p.v0 * p.velocity_unit) * p.velocity_unit,
-            p.alpha_v,
-            p.law.mu_k(p.v0 * p.velocity_unit) * p.alpha_n,
+            p.feedback.gains.alpha_v,
+            p.law.mu_k(p.v0 * p.velocity_unit) * p.feedback.gains.alpha_n,
         );
         let stable = number % 2 == 0
             && Crossings::of(groups)
-                .count(p.tau, MarginalTolerance::default())
+                .count(p.feedback.tau, MarginalTolerance::default())
                 .stable();
         let limits = Limits {
             horizon: 2000.0,

@@ -12,7 +12,7 @@ mod signal;
 use chance::{Chance, asked};
 use signal::{exponent, samples, slope};
 use slipmap::linear::general::{DelayLine, Polynomial, RootCounter, Spectrum, System};
-use slipmap::model::{FrictionLaw, Table};
+use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
 use slipmap::slip::motion::{Accuracy, Event, Integrator, Motion, Parameters};
 use slipmap::slip::step::Step;
 
@@ -20,11 +20,10 @@ fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, echo: (f64, f64)
     Parameters {
         law,
         velocity_unit: 1.0,
-        alpha_v: gains.0,
-        alpha_n: gains.1,
-        tau,
-        memory: echo.0,
-        latency: echo.1,
+        feedback: Feedback::new(gains.0, gains.1, tau).through(Channel {
+            memory: echo.0,
+            latency: echo.1,
+        }),
         v0,
         switch_on: 0.0,
     }
@@ -96,11 +95,11 @@ impl Recorded {
 
     /// Σ R^k [a(t−δ−kτ) − a(t−δ−(k+1)τ)].
     fn fed_back(&self, p: &Parameters, t: f64) -> f64 {
-        let (mut sum, mut share, mut t) = (0.0, 1.0, t - p.latency);
+        let (mut sum, mut share, mut t) = (0.0, 1.0, t - p.feedback.channel.latency);
         while t > 0.0 && share != 0.0 {
-            sum += share * (self.at(t) - self.at(t - p.tau));
-            share *= p.memory;
-            t -= p.tau;
+            sum += share * (self.at(t) - self.at(t - p.feedback.tau));
+            share *= p.feedback.channel.memory;
+            t -= p.feedback.tau;
         }
         sum
     }
@@ -198,12 +197,13 @@ fn errors_are_proportional_to_the_tolerance() {
 /// The characteristic roots under memory and latency, by the general engine.
 fn spectrum(p: &Parameters) -> Spectrum {
     let b = p.law.mu_prime(p.v0);
-    let a_n = p.law.mu_k(p.v0) * p.alpha_n;
+    let a_n = p.law.mu_k(p.v0) * p.feedback.gains.alpha_n;
     let open = Polynomial::new(&[1.0, b, 1.0]).unwrap();
-    let gain = Polynomial::new(&[a_n + p.alpha_v * b, p.alpha_v]).unwrap();
-    let system = System::feedback(open, gain, p.memory, p.latency);
+    let gain =
+        Polynomial::new(&[a_n + p.feedback.gains.alpha_v * b, p.feedback.gains.alpha_v]).unwrap();
+    let system = System::feedback(open, gain, p.feedback.channel);
     let (counter, line) = (RootCounter::new(&system), DelayLine::of(&system));
-    Spectrum::at(&counter, &line, p.tau, 2)
+    Spectrum::at(&counter, &line, p.feedback.tau, 2)
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
 use slipmap::critical::{Options, Problem, Regime};
 use slipmap::model::stop::Stop;
-use slipmap::model::{Control, FrictionLaw, Oscillator, Table};
+use slipmap::model::{Feedback, FrictionLaw, Oscillator, Table};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
 use slipmap::slip::motion::Accuracy;
@@ -63,13 +63,7 @@ fn every_fate_of_the_reference_is_met() {
         let case = Case {
             oscillator: Oscillator::new(1.0, 1.0, 1.0).unwrap(),
             law: law(kind, mu0, v_s),
-            control: Control {
-                alpha_v: number(alpha_v),
-                alpha_n: number(alpha_n),
-            },
-            tau: number(tau),
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(number(alpha_v), number(alpha_n), number(tau)),
             v0: number(v0),
             switch_on: number(phase),
             start: Start::AfterRelease,
@@ -132,11 +126,7 @@ fn problem(law: FrictionLaw, (alpha_v, alpha_n): (f64, f64), tau: f64) -> Proble
     Problem {
         law,
         velocity_unit: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: Stop::default(),
         options: Options::default(),
     }

@@ -128,8 +128,8 @@ impl SystemArgs {
             let checked = parameter.check(value);
             let value = checked.map_err(|e| Failure::out_of_range(&format!("--{name}"), &e))?;
             match parameter {
-                Parameter::Memory => at.memory = value,
-                Parameter::Latency => at.latency = value,
+                Parameter::Memory => at.channel.memory = value,
+                Parameter::Latency => at.channel.latency = value,
                 _ => at.tau = value,
             }
         }

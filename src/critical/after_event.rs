@@ -35,7 +35,7 @@ pub(super) fn after_graze(
     branch: &mut impl Releases<Map = Motion>,
 ) -> Sequel {
     let options = &problem.options.transition;
-    let least = slip + problem.remembered();
+    let least = slip + problem.feedback.remembered();
     let releases = [options.precision, options.past_graze];
     let mut passed = releases.iter().filter_map(|beyond| {
         let motion = branch.release_at(v0 * (1.0 + beyond));
@@ -72,7 +72,7 @@ pub(super) fn after_stick(
     let options = &problem.options.transition;
     let motion = branch.release_at(v0 * (1.0 + options.past_vanished_stick));
     let windows = f64::from(options.windows_without_stick);
-    let until = motion.t + windows * (problem.remembered() + 2.0 * std::f64::consts::TAU);
+    let until = motion.t + windows * (problem.feedback.remembered() + 2.0 * std::f64::consts::TAU);
     while motion.t < until {
         let event = motion.advance(f64::INFINITY);
         let sticks = event == Some(Event::Stick) && motion.mode() == Mode::Stick;

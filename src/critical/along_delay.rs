@@ -73,7 +73,10 @@ impl<'p> Block<'p> {
                 break;
             };
             if let Some(neighbour) = &mut neighbour {
-                neighbour.recall(self.problems[before].tau, known.end_of_stick_slip());
+                neighbour.recall(
+                    self.problems[before].feedback.tau,
+                    known.end_of_stick_slip(),
+                );
             }
         }
         self.found[cell] = Some(critical);
@@ -237,7 +240,10 @@ impl<'p> Block<'p> {
     /// continuation has changed its branch. Cells from here on are then searched from scratch.
     fn jumps(&self, cell: usize, there: &CriticalVelocity) -> bool {
         let change = |from: f64, to: f64| (to / from - 1.0).abs();
-        let expected = change(self.problems[cell - 1].tau, self.problems[cell].tau);
+        let expected = change(
+            self.problems[cell - 1].feedback.tau,
+            self.problems[cell].feedback.tau,
+        );
         let before = self.found[cell - 1].map_or(f64::NAN, |before| before.slip_time);
         // False for NaN: a lift-off has no such time.
         change(before, there.slip_time) > self.options().jump_of_slip + expected

@@ -12,6 +12,7 @@ use super::options::AlongDelayOptions;
 use super::problem::Problem;
 use super::transition::{Ending, Sequel, Undetermined};
 use super::with_history::{Released, WithHistory};
+use crate::model::Feedback;
 use crate::model::elementary::{exp, ln};
 use crate::slip::motion::Motion;
 
@@ -83,7 +84,7 @@ impl<'o> Neighbour<'o> {
             branch,
             at,
             before: None,
-            ends: vec![(problem.tau, ending.v0)],
+            ends: vec![(problem.feedback.tau, ending.v0)],
             event: ending.event,
             off: options.first_off,
             near: nearest(ending.event, options)[0],
@@ -135,11 +136,14 @@ impl<'o> Neighbour<'o> {
             self.near = first;
         }
         let last = self.ends.last()?.0;
-        if (problem.tau / last - 1.0).abs() < self.options.least_change {
+        if (problem.feedback.tau / last - 1.0).abs() < self.options.least_change {
             return None;
         }
         let between = Problem {
-            tau: last + self.options.part * (problem.tau - last),
+            feedback: Feedback {
+                tau: last + self.options.part * (problem.feedback.tau - last),
+                ..problem.feedback
+            },
             ..problem.clone()
         };
         self.approach(&between, trials)?;
@@ -148,7 +152,7 @@ impl<'o> Neighbour<'o> {
 
     /// The end at the delay of `problem`, or what follows instead.
     fn attempt(&mut self, problem: &Problem) -> Result<Ending, Sequel> {
-        let (tau, options) = (problem.tau, self.options);
+        let (tau, options) = (problem.feedback.tau, self.options);
         let predicted = self.predicted(tau);
         let ended = self.branch.accepted().clone();
         let Start { from, next_within } =
@@ -222,13 +226,13 @@ impl<'o> Neighbour<'o> {
         let alike = ending.event == self.event
             && (ending.v0 / predicted - 1.0).abs() < self.options.as_expected
             && (slip / self.slip_seen - 1.0).abs() < self.options.same_slip;
-        if alike && self.may_be_unseen(problem.tau) {
+        if alike && self.may_be_unseen(problem.feedback.tau) {
             self.unseen += 1;
             return Sequel::Ends(self.clear);
         }
         let seen = verify(problem, &mut self.branch, ending);
         if let Sequel::Ends(clear) = seen {
-            self.see(problem.tau, clear);
+            self.see(problem.feedback.tau, clear);
             self.slip_seen = slip;
         }
         seen

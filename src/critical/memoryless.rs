@@ -92,7 +92,7 @@ impl Releases for Memoryless<'_> {
         self.motion.set_v0(v0);
         // At the end of a stick that outlasted the delay.
         self.motion
-            .release_from(p.law.mu_s() * (1.0 + p.alpha_n * v0 * p.tau));
+            .release_from(p.law.mu_s() * (1.0 + p.feedback.gains.alpha_n * v0 * p.feedback.tau));
         &mut self.motion
     }
 }

@@ -96,7 +96,7 @@ impl<'o> Stops<'o> {
     ) -> Self {
         let p = motion.parameters();
         let delay = if p.switch_on.is_finite() {
-            p.remembered()
+            p.feedback.remembered()
         } else {
             0.0
         };

@@ -5,8 +5,8 @@ use super::transition::Transition;
 use crate::linear::{Count, MarginalTolerance};
 use crate::model::friction::Kind;
 use crate::model::stop::Stop;
-use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::{Accuracy, Motion, Parameters, remembered};
+use crate::model::{Feedback, FrictionLaw, Groups};
+use crate::slip::motion::{Accuracy, Motion, Parameters};
 use crate::slip::sliding::Sliding;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of
@@ -17,16 +17,8 @@ pub struct Problem {
     pub law: FrictionLaw,
     /// N0/√(κM), the unit of velocity in which the law's speeds are given.
     pub velocity_unit: f64,
-    /// α_v √(M/κ).
-    pub alpha_v: f64,
-    /// α_N/κ.
-    pub alpha_n: f64,
-    /// τ √(κ/M).
-    pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
-    pub memory: f64,
-    /// δ √(κ/M) ≥ 0, the latency of the feedback; ignored without gains.
-    pub latency: f64,
+    /// The feedback, without lags.
+    pub feedback: Feedback,
     /// A flag that ends the search; its answer is then meaningless.
     pub stop: Stop,
     /// The options of the search.
@@ -37,17 +29,15 @@ impl Problem {
     /// A motion's parameters at `v0`, with control from `switch_on` on.
     #[must_use]
     pub fn at(&self, v0: f64, switch_on: f64) -> Parameters {
-        let controlled = self.alpha_v != 0.0 || self.alpha_n != 0.0;
         Parameters {
             law: self.law.clone(),
             velocity_unit: self.velocity_unit,
-            alpha_v: self.alpha_v,
-            alpha_n: self.alpha_n,
-            tau: self.tau,
-            memory: self.memory,
-            latency: self.latency,
+            feedback: self.feedback,
             v0,
-            switch_on: if controlled { switch_on } else { f64::INFINITY },
+            switch_on: match self.feedback.gains.act() {
+                true => switch_on,
+                false => f64::INFINITY,
+            },
         }
     }
 
@@ -88,26 +78,30 @@ impl Problem {
     ///
     /// The spring is pulled at ȧ = v0 + α_v S there, which goes to v0/(1 − α_v τ/(1 − R)).
     pub(super) fn slower(&self) -> f64 {
-        let share = self.alpha_v * self.tau / (1.0 - self.memory);
+        let Feedback {
+            gains,
+            tau,
+            channel,
+            ..
+        } = self.feedback;
+        let share = gains.alpha_v * tau / (1.0 - channel.memory);
         (1.0 - share).max(1.0)
     }
 
     /// How long a stick has to last to erase the past. None where no stick erases it: under
     /// velocity control, and with memory.
     pub(super) fn erasing_stick(&self) -> Option<f64> {
-        let erased = self.alpha_v == 0.0 && (self.memory == 0.0 || self.alpha_n == 0.0);
-        erased.then_some(match self.alpha_n == 0.0 {
-            true => self.tau,
-            false => self.tau + self.latency,
+        let Feedback {
+            gains,
+            tau,
+            channel,
+            ..
+        } = self.feedback;
+        let erased = gains.alpha_v == 0.0 && (channel.memory == 0.0 || gains.alpha_n == 0.0);
+        erased.then_some(match gains.alpha_n == 0.0 {
+            true => tau,
+            false => tau + channel.latency,
         })
-    }
-
-    /// How long the feedback remembers, see [`Parameters::remembered`].
-    pub(super) fn remembered(&self) -> f64 {
-        match self.alpha_v == 0.0 && self.alpha_n == 0.0 {
-            true => self.tau,
-            false => remembered(self.tau, self.memory, self.latency),
-        }
     }
 
     /// How long to wait for a motion's outcome at `v0`, by these options: transients, many delays,
@@ -115,7 +109,7 @@ impl Problem {
     pub(super) fn patience(&self, v0: f64, options: &RampOptions) -> f64 {
         let longest_cycle = 2.0 * self.law.mu_s() * self.slower() / v0 + 10.0;
         let [always, delays, cycles] = options.patience;
-        always + delays * self.remembered() + cycles * longest_cycle
+        always + delays * self.feedback.remembered() + cycles * longest_cycle
     }
 
     /// The largest v0 at which stick-slip is looked for.
@@ -129,8 +123,8 @@ impl Problem {
         let speed = v0 * self.velocity_unit;
         Groups::new(
             self.law.mu_prime(speed) * self.velocity_unit,
-            self.alpha_v,
-            self.law.mu_k(speed) * self.alpha_n,
+            self.feedback.gains.alpha_v,
+            self.law.mu_k(speed) * self.feedback.gains.alpha_n,
         )
     }
 
@@ -145,9 +139,8 @@ impl Problem {
     pub fn sliding(&self, v0: f64) -> Sliding {
         Sliding {
             groups: self.groups(v0),
-            tau: self.tau,
-            memory: self.memory,
-            latency: self.latency,
+            tau: self.feedback.tau,
+            channel: self.feedback.channel,
         }
     }
 
@@ -162,9 +155,9 @@ impl Problem {
     /// μ_S goes half round the circle about sliding and comes to a stop at a = 2 μ_K − μ_S, where
     /// the block sticks.
     pub(super) fn persists_without_control(&self) -> bool {
-        let uncontrolled = self.alpha_v == 0.0 && self.alpha_n == 0.0;
         let mu_s = self.law.mu_s();
-        uncontrolled && matches!(self.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
+        !self.feedback.gains.act()
+            && matches!(self.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
     }
 }
 

@@ -221,7 +221,7 @@ fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observatio
             _ => None,
         },
         repeated: how.repeated,
-        cycles: how.waiting.cycles(problem.remembered(), options),
+        cycles: how.waiting.cycles(problem.feedback.remembered(), options),
     };
     let slides = problem.count(v0).stable();
     let mut stops = Stops::new(motion, slides, how.waiting, options);

@@ -211,7 +211,7 @@ impl ReturnMap for Motion {
     }
 
     fn delay(&self) -> f64 {
-        self.parameters().tau
+        self.parameters().feedback.tau
     }
 
     fn set_delay(&mut self, tau: f64) {

@@ -176,7 +176,7 @@ impl<'p> Trials<'p> {
         let slides = limits.stable_abscissa.is_some();
         let mut sticking = Sticking::new(patience, slides, &self.problem.options.switch_on);
         let summary = follow(&mut self.motion, &limits, &mut sticking);
-        let cycles = 1.0 + self.problem.remembered() / cycle.period();
+        let cycles = 1.0 + self.problem.feedback.remembered() / cycle.period();
         self.spent += summary.steps + self.problem.options.switch_on.steps_of_cycle * cycles as u64;
         let regime = match summary.outcome {
             Outcome::Undecided if self.motion.outgrows_its_past() => Regime::Undecided,

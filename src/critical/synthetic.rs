@@ -7,8 +7,8 @@ use super::options::{ContinuationOptions, Options};
 use super::problem::Problem;
 use super::regime::{Followed, Observation, Regime, Response};
 use super::return_map::{Cycle, NoReturn, Period, ReturnMap, Stop};
-use crate::model::FrictionLaw;
 use crate::model::stop::Stop as StopFlag;
+use crate::model::{Feedback, FrictionLaw};
 use crate::slip::motion::{Accuracy, Stretch};
 use crate::slip::outcome::{Outcome, Summary};
 
@@ -17,11 +17,7 @@ pub(super) fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) ->
     Problem {
         law,
         velocity_unit: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: StopFlag::default(),
         options: Options::default(),
     }

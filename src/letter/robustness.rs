@@ -7,8 +7,8 @@ use super::measures::{Measure, linear_measures};
 use super::workshop::{Source, Workshop, column, source};
 use crate::critical::{Options, Problem, critical_velocity};
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::FrictionLaw;
 use crate::model::stop::Stop;
+use crate::model::{Feedback, FrictionLaw};
 use crate::slip::cycle::after_release;
 use crate::slip::motion::Accuracy;
 use crate::store::MapFile;
@@ -41,11 +41,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64, stop: &Stop) -> Result<Problem,
     Ok(Problem {
         law: FrictionLaw::weakening(0.5, 0.5, 1.0)?,
         velocity_unit: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: stop.clone(),
         options: Options::default(),
     })

@@ -7,7 +7,7 @@ use crate::critical::limit::{CoulombLimit, LimitCell};
 use crate::critical::{Options, Problem, critical_velocity};
 use crate::linear::Crossings;
 use crate::model::stop::Stop;
-use crate::model::{FrictionLaw, Groups};
+use crate::model::{Feedback, FrictionLaw, Groups};
 use crate::sweep::Field;
 
 const FIG4: Source = source!("fig4");
@@ -27,11 +27,7 @@ fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
     Ok(Problem {
         law: FrictionLaw::coulomb(RATIO, 1.0)?,
         velocity_unit: 1.0,
-        alpha_v: 0.0,
-        alpha_n: -2.0 * gamma / (RATIO * tau),
-        tau,
-        memory: 0.0,
-        latency: 0.0,
+        feedback: Feedback::new(0.0, -2.0 * gamma / (RATIO * tau), tau),
         stop: stop.clone(),
         options: Options::default(),
     })

@@ -20,6 +20,7 @@ use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
 use faer::{Mat, Par, Spec};
 use num_complex::Complex64;
 
+use crate::model::Channel;
 use crate::model::elementary::{cbrt, cos};
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
@@ -57,12 +58,10 @@ pub struct Late<'c> {
     pub open: &'c [f64],
     /// A, of lower degree.
     pub gain: &'c [f64],
-    /// R.
-    pub memory: f64,
+    /// R and δ.
+    pub channel: Channel,
     /// τ > 0.
     pub tau: f64,
-    /// δ ≥ 0.
-    pub latency: f64,
 }
 
 /// The eigenvalues of [`eigenvalues`] for feedback with latency.
@@ -142,19 +141,19 @@ fn generator(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Mat<f64> {
 /// The matrix of [`late_eigenvalues`].
 fn late_generator(of: &Late<'_>, nodes: usize) -> Mat<f64> {
     let n = of.open.len() - 1;
-    let span = of.tau + of.latency;
+    let span = of.tau + of.channel.latency;
     let per_leading = 1.0 / of.open[n];
-    let late = interpolation(nodes, of.latency / span);
+    let late = interpolation(nodes, of.channel.latency / span);
     let delayed = interpolation(nodes, of.tau / span);
     // s(0) as a row over z, ż, … and s at the other nodes. The interpolation at τ contains s(0)
     // itself.
-    let per_own = 1.0 / (1.0 - of.memory * delayed[0]);
+    let per_own = 1.0 / (1.0 - of.channel.memory * delayed[0]);
     let mut now = vec![0.0; nodes + n];
     for (entry, a) in now.iter_mut().zip(of.gain) {
         *entry = a * per_own;
     }
     for (entry, weight) in now[n..].iter_mut().zip(&delayed[1..]) {
-        *entry = of.memory * weight * per_own;
+        *entry = of.channel.memory * weight * per_own;
     }
     let mut matrix = Mat::<f64>::zeros(nodes + n, nodes + n);
     for i in 1..n {

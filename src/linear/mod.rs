@@ -25,6 +25,7 @@
 //! - `controlled`: the controlled oscillator as an `equation`
 //! - `double`: numbers of twice the digits
 //! - `equation`: a characteristic equation, with all that is needed to find and follow its roots
+//! - [`feedback_loop`]: the feedback loop about steady sliding, as a system
 //! - `general`: any linear system with one delay
 //! - `newton`: polishing of a root (Halley's method) and its error
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
@@ -48,6 +49,7 @@ pub mod curves;
 pub mod decay;
 mod double;
 pub mod equation;
+pub mod feedback_loop;
 pub mod gains;
 pub mod general;
 pub mod lobes;

@@ -15,6 +15,7 @@
 //! - `elementary`: sin, exp and the like, the same bits on every processor; the only file that
 //!   imports libm
 //! - `error`: errors of parameters out of range, and the format of numbers in messages
+//! - `feedback`: the feedback of the elongation: gains, delay, memory, latency, lags
 //! - `friction`: Coulomb, velocity weakening, Stribeck, a table: value and slope
 //! - `friction_ranges`: bounds of a law's slope and curvature over a range of speeds
 //! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone
@@ -27,6 +28,7 @@
 
 pub mod elementary;
 mod error;
+mod feedback;
 pub mod friction;
 mod friction_ranges;
 mod groups;
@@ -37,6 +39,7 @@ pub mod stop;
 pub mod table;
 
 pub use error::{ModelError, Shown};
+pub use feedback::{Channel, Feedback, Lags};
 pub use friction::FrictionLaw;
 pub use groups::Groups;
 pub use oscillator::{Control, Oscillator, SlidingPoint};

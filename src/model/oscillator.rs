@@ -89,6 +89,14 @@ pub struct Control {
     pub alpha_n: f64,
 }
 
+impl Control {
+    /// Whether any gain acts.
+    #[must_use]
+    pub fn act(&self) -> bool {
+        self.alpha_v != 0.0 || self.alpha_n != 0.0
+    }
+}
+
 /// Value and slope of the kinetic friction coefficient at the sliding velocity v0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlidingPoint {

@@ -5,7 +5,7 @@ use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
-use crate::model::{Control, FrictionLaw, ModelError, Oscillator, SlidingPoint};
+use crate::model::{Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint};
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,14 +14,8 @@ pub struct Case {
     pub oscillator: Oscillator,
     /// The friction law.
     pub law: FrictionLaw,
-    /// The gains.
-    pub control: Control,
-    /// Delay; greater than 0 where control acts.
-    pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
-    pub memory: f64,
-    /// Latency of the feedback, at least 0; ignored without gains.
-    pub latency: f64,
+    /// The feedback, without lags.
+    pub feedback: Feedback,
     /// Pulling velocity.
     pub v0: f64,
     /// When control is switched on; +∞ for never. Without gains it never is.
@@ -179,41 +173,39 @@ impl Case {
         Parameters {
             law: self.law.clone(),
             velocity_unit: units.velocity,
-            alpha_v: self.control.alpha_v * units.time,
-            alpha_n: self.control.alpha_n / self.oscillator.stiffness(),
-            tau: self.tau / units.time,
-            memory: self.memory,
-            latency: self.latency / units.time,
+            feedback: self.feedback.dimensionless(&self.oscillator),
             v0: self.v0 / units.velocity,
-            switch_on: if self.control == Control::default() {
-                f64::INFINITY
-            } else {
-                self.switch_on / units.time
+            switch_on: match self.feedback.gains.act() {
+                true => self.switch_on / units.time,
+                false => f64::INFINITY,
             },
         }
     }
 
     fn check(&self) -> Result<(), ModelError> {
         ModelError::positive("v0", self.v0)?;
-        let uncontrolled = self.control == Control::default();
+        let Feedback {
+            gains,
+            tau,
+            channel: Channel { memory, latency },
+            ..
+        } = self.feedback;
         let (x_dot0, a0) = self.initial_state();
         for (name, value) in [
-            ("alpha_v", self.control.alpha_v),
-            ("alpha_n", self.control.alpha_n),
+            ("alpha_v", gains.alpha_v),
+            ("alpha_n", gains.alpha_n),
             ("x_dot0", x_dot0),
             ("a0", a0),
         ] {
             ModelError::check(name, value, "finite", value.is_finite())?;
         }
-        let tau = self.tau;
-        let delayed = tau.is_finite() && (tau > 0.0 || (uncontrolled && tau >= 0.0));
+        let delayed = tau.is_finite() && (tau > 0.0 || (!gains.act() && tau >= 0.0));
         ModelError::check(
             "tau",
             tau,
             "finite and greater than 0 under control",
             delayed,
         )?;
-        let (memory, latency) = (self.memory, self.latency);
         let within = memory.abs() < 1.0;
         ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
         let known = latency.is_finite() && latency >= 0.0;
@@ -235,17 +227,16 @@ impl Case {
     /// When v0 is out of range.
     pub fn sliding(&self) -> Result<Sliding, ModelError> {
         let control = if self.switch_on.is_finite() {
-            self.control
+            self.feedback.gains
         } else {
             Control::default()
         };
         let sliding = SlidingPoint::of_law(&self.law, self.v0)?;
-        let unit = self.oscillator.time_unit();
+        let Feedback { tau, channel, .. } = self.feedback.dimensionless(&self.oscillator);
         Ok(Sliding {
             groups: self.oscillator.groups(sliding, control),
-            tau: self.tau / unit,
-            memory: self.memory,
-            latency: self.latency / unit,
+            tau,
+            channel,
         })
     }
 
@@ -319,13 +310,7 @@ mod tests {
         Case {
             oscillator,
             law,
-            control: Control {
-                alpha_v: -0.33 / units.time,
-                alpha_n: 0.0,
-            },
-            tau: 4.15 * units.time,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(-0.33 / units.time, 0.0, 4.15 * units.time),
             v0,
             switch_on: 70.0 * units.time,
             start: Start::State {
@@ -359,7 +344,7 @@ mod tests {
         for (case, name) in [
             (
                 Case {
-                    tau: 0.0,
+                    feedback: Feedback::new(-0.33, 0.0, 0.0),
                     ..case.clone()
                 },
                 "tau",

@@ -25,6 +25,7 @@
 use std::f64::consts::TAU;
 
 use crate::model::elementary::ln;
+use crate::model::{Channel, Feedback};
 
 use super::motion::{Accuracy, Event, Mode, Motion, Parameters};
 
@@ -105,7 +106,7 @@ pub fn restart_after_release(
         return Err(NoCycle::NoStickSlip);
     }
     let cycle = follow_cycle(motion).ok_or(NoCycle::NoStickSlip)?;
-    let phase = if parameters.controlled() {
+    let phase = if parameters.feedback.gains.act() {
         phase.rem_euclid(cycle.period())
     } else {
         f64::INFINITY
@@ -130,13 +131,9 @@ pub fn restart_after_release(
 /// How long before switch-on the cycles have to be known: a delay, a latency, and as many more
 /// delays as the memory needs to fall below the tolerance.
 fn known_before(parameters: &Parameters, accuracy: Accuracy) -> f64 {
-    let Parameters {
-        tau,
-        memory,
-        latency,
-        ..
-    } = *parameters;
-    if !parameters.beyond_letter() {
+    let Feedback { tau, channel, .. } = parameters.feedback;
+    let Channel { memory, latency } = channel;
+    if !parameters.feedback.echoes() {
         return tau;
     }
     let remembered = match memory == 0.0 {
@@ -201,11 +198,7 @@ mod tests {
         Parameters {
             law,
             velocity_unit: 1.0,
-            alpha_v: -0.33,
-            alpha_n: 0.0,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(-0.33, 0.0, tau),
             v0,
             switch_on: 0.0,
         }

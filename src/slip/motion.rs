@@ -37,7 +37,6 @@ mod taylor;
 
 use super::collocation::NODES;
 use super::friction_series::FrictionSeries;
-pub(crate) use parameters::remembered;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
 
 use super::history::History;
@@ -46,6 +45,7 @@ use super::series::{MOST_ORDER, value};
 use super::step::{Control, Step};
 use crate::model::elementary::ln;
 use crate::model::stop::Stop;
+use crate::model::{Channel, Feedback};
 
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -112,9 +112,9 @@ impl Motion {
         (u, a): (f64, f64),
         [mut history, mut signal]: [History; 2],
     ) -> Self {
-        if !parameters.controlled() {
+        if !parameters.feedback.gains.act() {
             // Nothing is fed back, so memory and latency have no effect.
-            (parameters.memory, parameters.latency) = (0.0, 0.0);
+            parameters.feedback.channel = Channel::default();
         }
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         let order = order(accuracy.integrator, tolerance);
@@ -122,11 +122,16 @@ impl Motion {
         friction.restart(u.abs());
         history.restart(a, 0.0, order as u32);
         signal.restart(0.0, 0.0, order as u32);
-        let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
+        let gain = parameters
+            .feedback
+            .gains
+            .alpha_v
+            .abs()
+            .max(parameters.feedback.gains.alpha_n.abs());
         history.look_ahead(gain, order, tolerance);
         signal.look_ahead(gain, order, tolerance);
         let step = Step {
-            is_late: parameters.latency > 0.0,
+            is_late: parameters.feedback.channel.latency > 0.0,
             ..Step::NONE
         };
         let mut motion = Self {
@@ -174,7 +179,11 @@ impl Motion {
     /// Puts the block at the end of a stick that erased all memory: it is released at t = 0 to slip
     /// forwards from the elongation `a`, which has grown at the rate v0 for longer than a delay.
     pub fn release_from(&mut self, a: f64) {
-        let Parameters { v0, tau, .. } = self.parameters;
+        let Parameters {
+            v0,
+            feedback: Feedback { tau, .. },
+            ..
+        } = self.parameters;
         let fed_back = self.even_signal(v0);
         let kept = self.kept(a, fed_back);
         self.history.restart_rising(kept, v0, tau);
@@ -198,7 +207,7 @@ impl Motion {
     /// Changes the delay from now on, to less than twice the present one: the past is known for two
     /// delays.
     pub fn set_delay(&mut self, tau: f64) {
-        self.parameters.tau = tau;
+        self.parameters.feedback.tau = tau;
         if self.mode == Mode::Stick {
             self.even_since = self.t;
         }
@@ -246,14 +255,14 @@ impl Motion {
         stretches: &[Stretch],
     ) -> bool {
         self.parameters.clone_from(&last.parameters);
-        (self.parameters.v0, self.parameters.tau) = (v0, tau);
+        (self.parameters.v0, self.parameters.feedback.tau) = (v0, tau);
         let pasts = (&mut last.history, &mut before.history);
         let mut has_room = self
             .history
             .extrapolate(pasts, share, 1.01 * tau, stretches);
-        if self.parameters.latency > 0.0 {
+        if self.parameters.feedback.channel.latency > 0.0 {
             let pasts = (&mut last.signal, &mut before.signal);
-            let span = 1.01 * self.parameters.latency;
+            let span = 1.01 * self.parameters.feedback.channel.latency;
             has_room &= self.signal.extrapolate(pasts, share, span, stretches);
         }
         self.friction.restart(0.0);
@@ -338,8 +347,16 @@ impl Motion {
         let p = &self.parameters;
         Control {
             v0: p.v0,
-            alpha_v: if controlled { p.alpha_v } else { 0.0 },
-            alpha_n: if controlled { p.alpha_n } else { 0.0 },
+            alpha_v: if controlled {
+                p.feedback.gains.alpha_v
+            } else {
+                0.0
+            },
+            alpha_n: if controlled {
+                p.feedback.gains.alpha_n
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -362,11 +379,7 @@ mod tests {
         let parameters = Parameters {
             law,
             velocity_unit: 1.0,
-            alpha_v,
-            alpha_n,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(alpha_v, alpha_n, tau),
             v0,
             switch_on: 70.0,
         };

@@ -1,9 +1,10 @@
 //! Linear stability of sliding under the feedback of a motion.
 
-use crate::linear::general::{DelayLine, Polynomial, RootCounter, Source, Spectrum, System};
+use crate::linear::feedback_loop::FeedbackLoop;
+use crate::linear::general::{DelayLine, RootCounter, Spectrum, System};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
-use crate::model::Groups;
+use crate::model::{Channel, Groups, Lags};
 
 /// Sliding at one velocity, dimensionless as a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,17 +13,15 @@ pub struct Sliding {
     pub groups: Groups,
     /// τ √(κ/M).
     pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1.
-    pub memory: f64,
-    /// δ √(κ/M) ≥ 0, its latency.
-    pub latency: f64,
+    /// Memory and latency of the feedback.
+    pub channel: Channel,
 }
 
 impl Sliding {
     /// The number of unstable roots. Where it is not known the count is marginal.
     #[must_use]
     pub fn count(&self, tolerance: MarginalTolerance) -> Count {
-        match self.beyond_letter() {
+        match self.general() {
             None => Crossings::of(self.groups).count(self.tau, tolerance),
             Some(system) => count_on(&DelayLine::of(&system), self.tau, tolerance),
         }
@@ -31,7 +30,7 @@ impl Sliding {
     /// The spectral abscissa, in units of √(κ/M), if it is known and all roots are stable.
     #[must_use]
     pub fn stable_abscissa(&self) -> Option<f64> {
-        let Some(system) = self.beyond_letter() else {
+        let Some(system) = self.general() else {
             let count = self.count(MarginalTolerance::default());
             if !count.stable() {
                 return None;
@@ -50,24 +49,11 @@ impl Sliding {
 
     /// The general system B(1 − RE) − A e^(−λδ)(1 − E); None where the feedback is the letter's
     /// own.
-    fn beyond_letter(&self) -> Option<System> {
-        let Groups { b, a_v, a_n } = self.groups;
-        let plain = self.memory == 0.0 && self.latency == 0.0;
-        if plain || (a_v == 0.0 && a_n == 0.0) {
+    fn general(&self) -> Option<System> {
+        if !self.channel.acts() || self.groups.uncontrolled() {
             return None;
         }
-        let lambda = Polynomial::variable();
-        let number = |value: f64| Polynomial::constant(value, f64::EPSILON * value.abs());
-        let square = lambda.power(2).ok()?;
-        let open = square
-            .plus(&lambda, b)
-            .plus(&Polynomial::constant(1.0, 0.0), 1.0);
-        let gain = number(a_n + a_v * b).plus(&lambda, a_v);
-        let source = Source {
-            groups: self.groups,
-            lags: [0.0; 3],
-        };
-        Some(System::feedback(open, gain, self.memory, self.latency).known_by(source))
+        Some(FeedbackLoop::of_letter(self.groups, self.channel, Lags::default()).system())
     }
 }
 
@@ -96,8 +82,10 @@ mod tests {
                     let sliding = Sliding {
                         groups: Groups::new(-1.0, 0.0, share * least(memory)),
                         tau: 0.003 * f64::from(i),
-                        memory,
-                        latency: 0.0,
+                        channel: Channel {
+                            memory,
+                            latency: 0.0,
+                        },
                     };
                     sliding.count(MarginalTolerance::default()).stable()
                 });
@@ -107,8 +95,7 @@ mod tests {
         let sliding = |b: f64, a_v: f64, tau: f64, memory: f64, latency: f64| Sliding {
             groups: Groups::new(b, a_v, 0.0),
             tau,
-            memory,
-            latency,
+            channel: Channel { memory, latency },
         };
         // Stable for 1.63070 < τ < 4.57172.
         let late = |tau: f64| sliding(-1.0, -0.7, tau, 0.8, 0.7);

@@ -107,7 +107,7 @@ impl Watch {
         let p = motion.parameters();
         let rest = motion.sliding_elongation();
         let tau = if p.switch_on.is_finite() {
-            p.remembered()
+            p.feedback.remembered()
         } else {
             0.0
         };
@@ -342,18 +342,14 @@ mod tests {
     use super::*;
     use crate::linear::rightmost::Rightmost;
     use crate::linear::{Crossings, MarginalTolerance};
-    use crate::model::{FrictionLaw, Groups};
+    use crate::model::{Feedback, FrictionLaw, Groups};
     use crate::slip::motion::{Accuracy, Parameters};
 
     fn letter(v0: f64, alpha_v: f64, alpha_n: f64, tau: f64) -> Parameters {
         Parameters {
             law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
             velocity_unit: 1.0,
-            alpha_v,
-            alpha_n,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(alpha_v, alpha_n, tau),
             v0,
             switch_on: 70.0,
         }
@@ -362,11 +358,11 @@ mod tests {
     fn run(p: Parameters, u: f64) -> Summary {
         let groups = Groups::new(
             p.law.mu_prime(p.v0),
-            p.alpha_v,
-            p.law.mu_k(p.v0) * p.alpha_n,
+            p.feedback.gains.alpha_v,
+            p.law.mu_k(p.v0) * p.feedback.gains.alpha_n,
         );
-        let count = Crossings::of(groups).count(p.tau, MarginalTolerance::default());
-        let root = Rightmost::at(groups, p.tau, 1, count).roots[0];
+        let count = Crossings::of(groups).count(p.feedback.tau, MarginalTolerance::default());
+        let root = Rightmost::at(groups, p.feedback.tau, 1, count).roots[0];
         let limits = Limits {
             horizon: 3000.0,
             steps: 1_000_000,
@@ -516,7 +512,7 @@ mod tests {
         // Without control it is an oscillation.
         let p = Parameters {
             switch_on: f64::INFINITY,
-            alpha_v: 0.0,
+            feedback: Feedback::new(0.0, 0.0, 3.0),
             ..p
         };
         let mut motion = Motion::new(p, Accuracy::default(), 0.7, 0.5);

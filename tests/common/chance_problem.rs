@@ -2,7 +2,7 @@
 
 use slipmap::critical::{Options, Problem};
 use slipmap::model::stop::Stop;
-use slipmap::model::{FrictionLaw, Table};
+use slipmap::model::{Feedback, FrictionLaw, Table};
 
 #[path = "chance.rs"]
 mod chance;
@@ -47,11 +47,7 @@ impl Chance {
         Problem {
             law,
             velocity_unit: 1.0,
-            alpha_v,
-            alpha_n,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(alpha_v, alpha_n, tau),
             stop: Stop::default(),
             options: Options::default(),
         }

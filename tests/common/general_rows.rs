@@ -5,6 +5,7 @@
 use std::collections::HashMap;
 
 use slipmap::linear::general::{Polynomial, System};
+use slipmap::model::Channel;
 
 /// One row: its cells by the names of the columns.
 pub(crate) struct Row {
@@ -165,7 +166,14 @@ fn pd(row: &Row) -> System {
 /// The tables whose systems have no latency, with the system of each row.
 pub(crate) fn without_latency() -> Vec<(Row, System)> {
     let feedback = |(open, gain): (Polynomial, Polynomial), row: &Row| {
-        System::feedback(open, gain, row.or_zero("memory"), 0.0)
+        System::feedback(
+            open,
+            gain,
+            Channel {
+                memory: row.or_zero("memory"),
+                latency: 0.0,
+            },
+        )
     };
     let mut all = Vec::new();
     let mut add = |name: &str, table: &str, system: &dyn Fn(&Row) -> System| {
@@ -212,8 +220,14 @@ pub(crate) fn with_latency() -> Vec<(Row, System)> {
         .into_iter()
         .map(|row| {
             let (open, gain) = with_lags(&row);
-            let system =
-                System::feedback(open, gain, row.or_zero("memory"), row.or_zero("latency"));
+            let system = System::feedback(
+                open,
+                gain,
+                Channel {
+                    memory: row.or_zero("memory"),
+                    latency: row.or_zero("latency"),
+                },
+            );
             (row, system)
         })
         .collect()

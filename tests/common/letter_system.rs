@@ -1,7 +1,7 @@
 //! The letter's control written as a general system.
 
 use slipmap::linear::general::{Polynomial, System};
-use slipmap::model::Groups;
+use slipmap::model::{Channel, Groups};
 
 /// B and A of the letter's control in dimensionless groups, with memory and latency.
 pub(crate) fn letter(Groups { b, a_v, a_n }: Groups, memory: f64, latency: f64) -> System {
@@ -10,5 +10,5 @@ pub(crate) fn letter(Groups { b, a_v, a_n }: Groups, memory: f64, latency: f64) 
         polynomial(&[1.0, b, 1.0]),
         polynomial(&[a_n + a_v * b, a_v]),
     );
-    System::feedback(open, gain, memory, latency)
+    System::feedback(open, gain, Channel { memory, latency })
 }

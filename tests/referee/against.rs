@@ -4,7 +4,7 @@
 use slipmap::critical::switch_on::{Phase, Trials};
 use slipmap::critical::{self, CriticalVelocity, Options, Problem, Regime, critical_velocity};
 use slipmap::model::stop::Stop;
-use slipmap::model::{FrictionLaw, Table};
+use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
 use slipmap::sweep::CaseSpec;
@@ -189,11 +189,10 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
     Problem {
         law: friction_law(&setting.friction),
         velocity_unit: 1.0,
-        alpha_v: setting.alpha_v,
-        alpha_n: setting.alpha_n,
-        tau: setting.tau,
-        memory: setting.memory,
-        latency: setting.latency,
+        feedback: Feedback::new(setting.alpha_v, setting.alpha_n, setting.tau).through(Channel {
+            memory: setting.memory,
+            latency: setting.latency,
+        }),
         stop: Stop::default(),
         options: Options::default(),
     }

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::parts::Feedback;
+use super::parts::FeedbackForm;
 use super::polynomial::{At, Polynomial};
 use super::system::System;
 use crate::linear::double::{Double, DoubleComplex, EXPONENTIAL, UNIT};
@@ -93,11 +93,13 @@ impl System {
             return None;
         }
         let [p, q] = match &self.feedback {
-            Some(Feedback {
-                open, gain, memory, ..
+            Some(FeedbackForm {
+                open,
+                gain,
+                channel,
             }) => {
                 let (b, a) = (Jet::at(open, lambda), Jet::at(gain, lambda));
-                [b.plus(&a, -1.0), a.plus(&b, -memory)]
+                [b.plus(&a, -1.0), a.plus(&b, -channel.memory)]
             }
             None => [Jet::at(&self.p, lambda), Jet::at(&self.q, lambda)],
         };

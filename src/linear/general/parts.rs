@@ -4,19 +4,18 @@ use num_complex::Complex64;
 
 use super::polynomial::{At, Polynomial};
 use crate::linear::rounded::Rounded;
+use crate::model::Channel;
 use crate::model::elementary::{arg, atan2, exp, expm1, sincos};
 
 /// The feedback form D = B(1 − R E) − A e^(−λδ)(1 − E): without latency P = B − A and Q = A − R B.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Feedback {
+pub(super) struct FeedbackForm {
     /// B, the open loop.
     pub open: Polynomial,
     /// A, what is fed back.
     pub gain: Polynomial,
-    /// R, the memory.
-    pub memory: f64,
-    /// δ ≥ 0, the latency.
-    pub latency: f64,
+    /// R and δ.
+    pub channel: Channel,
 }
 
 /// e^(−στ) and what is made of it without cancellation.

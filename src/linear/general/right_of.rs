@@ -374,6 +374,7 @@ impl RootCounter {
 mod tests {
     use super::*;
     use crate::linear::general::Polynomial;
+    use crate::model::Channel;
 
     /// Right angles one way and back, in every order of signs: the sum is known without rounding.
     #[test]
@@ -394,7 +395,14 @@ mod tests {
     fn bounds_and_stops_hold_in_every_unit() {
         let open = Polynomial::new(&[1e8, 2e3, 1.0]).unwrap();
         let gain = Polynomial::new(&[1e7]).unwrap();
-        let system = System::feedback(open, gain, 0.5, 1e-4);
+        let system = System::feedback(
+            open,
+            gain,
+            Channel {
+                memory: 0.5,
+                latency: 1e-4,
+            },
+        );
         let unit = system.time_unit();
         assert_ne!(unit, 1.0);
         let count = |counter: &RootCounter| counter.in_unit(unit).right_of(3e-4 / unit, 0.0);

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::parts::{Decay, Feedback, late};
+use super::parts::{Decay, FeedbackForm, late};
 use super::polynomial::{DegreeTooLarge, Polynomial};
 use super::precise::source::Source;
 use super::reason::Reason;
@@ -10,6 +10,7 @@ use super::shifted::Shifted;
 use super::zeros::{Disc, Zeros};
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
+use crate::model::Channel;
 use crate::model::elementary::{exp, ln, pow};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
@@ -19,7 +20,7 @@ pub struct System {
     pub(super) p: Polynomial,
     /// Q.
     pub(super) q: Polynomial,
-    pub(super) feedback: Option<Feedback>,
+    pub(super) feedback: Option<FeedbackForm>,
     pub(super) source: Option<Source>,
     class: Class,
 }
@@ -71,26 +72,25 @@ impl System {
         Self::classified(p, q, None)
     }
 
-    /// The system of the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and
-    /// the latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere memory and
+    /// The system of the open loop B, the feedback A with deg A < deg B, the memory R and the
+    /// latency δ: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere memory and
     /// latency are ignored: there is nothing to remember and nothing that could be late.
     #[inline]
     #[must_use]
-    pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
+    pub fn feedback(open: Polynomial, gain: Polynomial, channel: Channel) -> Self {
         if gain.is_zero() {
             return Self::classified(open, Polynomial::ZERO, None);
         }
         let p = open.plus(&gain, -1.0);
-        let q = if memory == 0.0 {
+        let q = if channel.memory == 0.0 {
             gain
         } else {
-            gain.plus(&open, -memory)
+            gain.plus(&open, -channel.memory)
         };
-        let feedback = Feedback {
+        let feedback = FeedbackForm {
             open,
             gain,
-            memory,
-            latency,
+            channel,
         };
         Self::classified(p, q, Some(feedback))
     }
@@ -113,7 +113,7 @@ impl System {
     }
 
     #[inline]
-    pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
+    pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<FeedbackForm>) -> Self {
         let mut system = Self {
             p,
             q,
@@ -204,7 +204,7 @@ impl System {
             return None;
         }
         // Only with latency P and Q do not say it all.
-        let feedback = self.late().map(Feedback::divided_by_variable);
+        let feedback = self.late().map(FeedbackForm::divided_by_variable);
         Some(Self::classified(
             self.p.divided_by_variable(),
             self.q.divided_by_variable(),
@@ -215,8 +215,8 @@ impl System {
     /// P + Q: its zeros are the roots without delay.
     pub(super) fn without_delay(&self) -> Polynomial {
         match &self.feedback {
-            Some(Feedback { open, memory, .. }) => open.scaled(Rounded {
-                value: 1.0 - memory,
+            Some(FeedbackForm { open, channel, .. }) => open.scaled(Rounded {
+                value: 1.0 - channel.memory,
                 error: 0.5 * f64::EPSILON,
             }),
             None => self.p.plus(&self.q, 1.0),
@@ -235,9 +235,11 @@ impl System {
     #[inline]
     pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
         match &self.feedback {
-            Some(Feedback {
-                open, gain, memory, ..
-            }) => Shifted::of_feedback([open, gain], *memory, line, decay),
+            Some(FeedbackForm {
+                open,
+                gain,
+                channel,
+            }) => Shifted::of_feedback([open, gain], channel.memory, line, decay),
             None => Shifted::direct([&self.p, &self.q], line, decay),
         }
     }
@@ -283,11 +285,10 @@ impl System {
         let delayed = 1.0 - difference;
         let (kept, fed, part) = match &self.feedback {
             // D = (1 − R) B − Q(1 − E): short delays keep their digits.
-            Some(Feedback {
+            Some(FeedbackForm {
                 open,
                 gain,
-                memory,
-                latency,
+                channel: Channel { memory, latency },
             }) => {
                 let (b, a) = (open.jet(lambda), late(gain.jet(lambda), *latency, lambda));
                 let fed = [0, 1, 2].map(|i| a[i] - memory * b[i]);
@@ -320,8 +321,10 @@ impl System {
         let turned = delayed * size * tau;
         match &self.feedback {
             Some(feedback) => {
-                let Feedback {
-                    open, gain, memory, ..
+                let FeedbackForm {
+                    open,
+                    gain,
+                    channel: Channel { memory, .. },
                 } = feedback;
                 let by = jet.difference.l1_norm() + turned;
                 part(gain, by * feedback.late_size(lambda))

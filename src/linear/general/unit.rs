@@ -1,10 +1,11 @@
 //! The unit of time in which a system is of the order of 1, and lines in other units.
 
 use super::line::DelayLine;
-use super::parts::Feedback;
+use super::parts::FeedbackForm;
 use super::polynomial::Polynomial;
 use super::system::System;
 use crate::linear::rounded::Rounded;
+use crate::model::Channel;
 
 /// Frequencies within so many powers of two of 1 stay as they are.
 const FEW: i64 = 5;
@@ -86,11 +87,13 @@ impl System {
             None => self.p.degree().max(self.q.degree()),
         };
         let [p, q] = [&self.p, &self.q].map(|of| of.in_unit(unit, n));
-        let feedback = self.feedback.map(|of| Feedback {
+        let feedback = self.feedback.map(|of| FeedbackForm {
             open: of.open.in_unit(unit, n),
             gain: of.gain.in_unit(unit, n),
-            memory: of.memory,
-            latency: of.latency / unit,
+            channel: Channel {
+                latency: of.channel.latency / unit,
+                ..of.channel
+            },
         });
         Self::classified(p, q, feedback)
     }

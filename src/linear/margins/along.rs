@@ -8,9 +8,9 @@ use super::limits::Limits;
 use super::nearest::{Family, MOST_BOXES, Nearest, nearest};
 use super::setting::{AsCase, Case, Setting};
 use crate::linear::Crossings;
-use crate::model::Groups;
 use crate::model::elementary::exp;
 use crate::model::friction::Kind;
+use crate::model::{Channel, Groups};
 
 /// Decay rates above this are not told from infinity.
 const LARGEST_EXPONENT: f64 = 300.0;
@@ -150,11 +150,14 @@ pub(super) fn latency_with_decay(case: &Case) -> f64 {
 pub(super) fn latency(case: &Case, beyond: &Beyond) -> f64 {
     let Setting { groups, tau, decay } = case.setting;
     if decay == 0.0 {
-        let margin = beyond.system(groups).latency_margin(tau);
+        let margin = beyond.of_groups(groups).system().latency_margin(tau);
         return margin.unwrap_or(f64::NAN);
     }
     let at_once = Beyond {
-        latency: 0.0,
+        channel: Channel {
+            latency: 0.0,
+            ..beyond.channel
+        },
         ..*beyond
     };
     match at_once.stability(groups, tau, decay) {
@@ -212,7 +215,7 @@ impl Family for Along<'_> {
         let Setting { groups, tau, decay } = self.case.setting;
         let Groups { b, a_v, a_n } = groups;
         if let Some(beyond) = &self.case.beyond {
-            let latency = beyond.latency;
+            let latency = beyond.channel.latency;
             let here = UpTo {
                 b,
                 a_v,

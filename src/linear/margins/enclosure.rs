@@ -78,13 +78,13 @@ impl<const V: usize> Point<V> {
             time => number * lag(time),
         };
         let mut open = lambda * (lambda + b) + one;
-        for time in [beyond.load_lag, beyond.velocity_lag, beyond.sensor_lag] {
+        for time in beyond.lags.times() {
             open = passing(open, time);
         }
-        let load = passing(self.a_n, beyond.velocity_lag);
-        let velocity = passing((b + lambda).scaled(self.a_v), beyond.load_lag);
+        let load = passing(self.a_n, beyond.lags.velocity);
+        let velocity = passing((b + lambda).scaled(self.a_v), beyond.lags.load);
         let feedback = factor * (load + velocity);
-        let fixed = || match beyond.latency {
+        let fixed = || match beyond.channel.latency {
             0.0 => None,
             latency => Some(lambda.scaled(latency)),
         };
@@ -92,7 +92,7 @@ impl<const V: usize> Point<V> {
         Parts {
             open,
             feedback: late.map_or(feedback, |l| feedback * l.scaled(-1.0).exponential()),
-            memory: beyond.memory,
+            memory: beyond.channel.memory,
             late,
         }
     }

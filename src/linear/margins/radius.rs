@@ -151,7 +151,8 @@ impl Surroundings<'_> {
     fn accumulation(&self) -> Option<f64> {
         let Setting { groups, tau, decay } = self.case.setting;
         let beyond = self.case.beyond?;
-        let acts = decay > 0.0 && tau > 0.0 && beyond.memory != 0.0 && !groups.uncontrolled();
+        let acts =
+            decay > 0.0 && tau > 0.0 && beyond.channel.memory != 0.0 && !groups.uncontrolled();
         acts.then(|| beyond.last_delay(decay) / tau - 1.0)
     }
 

@@ -3,8 +3,8 @@
 use super::beyond::Beyond;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::{Crossings, MarginalTolerance};
-use crate::model::Groups;
 use crate::model::stop::Stop;
+use crate::model::{Channel, Groups};
 
 /// A setting whose margins are asked for, in dimensionless numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ impl Case {
     #[must_use]
     pub fn beyond(setting: Setting, mut beyond: Beyond) -> Self {
         if setting.groups.uncontrolled() {
-            (beyond.memory, beyond.latency) = (0.0, 0.0);
+            beyond.channel = Channel::default();
         }
         Self {
             setting,

@@ -131,7 +131,7 @@ impl Surroundings<'_> {
                 a_v: groups.a_v * (1.0 + most),
                 a_n: a_n * (1.0 + most),
                 tau: tau * (1.0 + most),
-                latency: beyond.latency,
+                latency: beyond.channel.latency,
             };
             return beyond.highest(up_to, decay);
         }

@@ -20,7 +20,7 @@ const MOST_SHORTER: u32 = 12;
 struct Now {
     controlled: bool,
     /// The feedback has memory or latency.
-    beyond_letter: bool,
+    echoes: bool,
     /// The block is stuck, and its elongation has grown evenly for a delay.
     evenly: bool,
 }
@@ -36,7 +36,7 @@ impl Motion {
         let controlled = self.t >= self.parameters.switch_on;
         let now = Now {
             controlled,
-            beyond_letter: self.parameters.beyond_letter(),
+            echoes: self.parameters.feedback.echoes(),
             evenly: self.sticks_evenly(),
         };
         let past = self.read_delayed(now);
@@ -69,11 +69,11 @@ impl Motion {
         }
         self.kink = match (&crossing, event) {
             (Some(crossing), _) => crossing.kink,
-            (None, Some(Event::SwitchOn)) if self.parameters.alpha_v != 0.0 => 1,
+            (None, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
             (None, Some(_)) => 2,
             (None, None) => SMOOTH,
         };
-        if now.beyond_letter {
+        if now.echoes {
             self.note_kinks(self.kink, &past, controlled);
         } else if self.kink == SMOOTH && length == delay.length && delay.kink != SMOOTH {
             self.kink = self.passed_on(delay.kink);
@@ -93,14 +93,14 @@ impl Motion {
     fn limit(&self, now: Now, delay: &DelayLimit, horizon: f64) -> f64 {
         let mut limit = delay.length.min(horizon - self.t);
         let p = &self.parameters;
-        if now.beyond_letter && !(now.controlled && now.evenly) {
+        if now.echoes && !(now.controlled && now.evenly) {
             limit = limit.min(self.unforeseen(now.controlled));
         }
         if !now.controlled {
             limit.min(p.switch_on - self.t)
-        } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !now.evenly {
+        } else if self.mode == Mode::Stick && p.feedback.gains.alpha_v != 0.0 && !now.evenly {
             // While the block sticks nothing corrects errors of the last polynomial beyond its end.
-            limit.min(p.tau)
+            limit.min(p.feedback.tau)
         } else {
             limit
         }
@@ -124,12 +124,16 @@ impl Motion {
 
     /// How long a step of polynomials that hold for `radius` is, if no event ends it.
     fn length(&self, radius: f64, limit: f64, delay: &DelayLimit, now: Now) -> f64 {
-        let reads = now.controlled || now.beyond_letter;
+        let reads = now.controlled || now.echoes;
         let foreseen = reads && self.integrator == Integrator::Taylor;
         let balanced = BALANCED * self.history.ahead() * radius;
         let shortest = match self.step.is_late {
-            true => self.parameters.tau.min(self.parameters.latency),
-            false => self.parameters.tau,
+            true => self
+                .parameters
+                .feedback
+                .tau
+                .min(self.parameters.feedback.channel.latency),
+            false => self.parameters.feedback.tau,
         };
         let free = match foreseen && shortest < balanced {
             // The next step, one delay behind, uses the polynomial of this one beyond its end.
@@ -152,14 +156,14 @@ impl Motion {
     fn read_delayed(&mut self, now: Now) -> PastLimits {
         // Also before control acts, so that memory does not grow with time.
         self.history
-            .forget_before(self.t - 2.0 * self.parameters.tau);
+            .forget_before(self.t - 2.0 * self.parameters.feedback.tau);
         self.signal
-            .forget_before(self.t - 2.0 * self.parameters.latency);
+            .forget_before(self.t - 2.0 * self.parameters.feedback.channel.latency);
         let of_delay = |delay: DelayLimit| PastLimits {
             delay,
             latency: DelayLimit::NONE,
         };
-        if !now.controlled && !now.beyond_letter {
+        if !now.controlled && !now.echoes {
             return of_delay(DelayLimit::NONE);
         }
         if now.evenly && now.controlled {
@@ -168,10 +172,10 @@ impl Motion {
                 kink: SMOOTH,
             });
         }
-        if now.beyond_letter {
+        if now.echoes {
             return self.read_past(now.controlled);
         }
-        let time = self.t - self.parameters.tau;
+        let time = self.t - self.parameters.feedback.tau;
         let reach = self.history.read(time, self.kink, &mut self.step.delayed);
         of_delay(DelayLimit {
             length: reach.until - time,
@@ -189,12 +193,17 @@ impl Motion {
         let p = &self.parameters;
         // With memory no step outlasts the delay, so here `history` holds a, not W.
         let a = &self.step.a[..=self.step.order];
-        let length = self.as_told(a, &self.history, p.tau, length);
-        if !(self.step.is_late && length > p.latency) {
+        let length = self.as_told(a, &self.history, p.feedback.tau, length);
+        if !(self.step.is_late && length > p.feedback.channel.latency) {
             return length;
         }
         let (v, order) = self.signal_of_step();
-        self.as_told(&v[..=order], &self.signal, p.latency, length)
+        self.as_told(
+            &v[..=order],
+            &self.signal,
+            p.feedback.channel.latency,
+            length,
+        )
     }
 
     /// `length`, or less where it outlasts this `delay` and the last polynomial of `history`,
@@ -224,7 +233,7 @@ impl Motion {
 
     /// The order of the kink of the motion that a kink of the delayed elongation causes.
     pub(super) fn passed_on(&self, kink: u32) -> u32 {
-        let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
+        let smoother = match (self.mode, self.parameters.feedback.gains.alpha_v != 0.0) {
             (_, true) => 1,
             // A stuck block feels the load only when it is released.
             (Mode::Stick, false) => return SMOOTH,
@@ -247,7 +256,7 @@ impl Motion {
             // A polynomial through values does not hold outside its step.
             Integrator::Collocation => 0.0,
         };
-        let has_room = match self.parameters.beyond_letter() {
+        let has_room = match self.parameters.feedback.echoes() {
             true => self.keep(around),
             false => self.history.push(self.t, around, a, self.kink),
         };

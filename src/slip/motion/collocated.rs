@@ -23,7 +23,7 @@ impl Motion {
         let control = self.control(controlled);
         let load = 1.0 + control.alpha_n * self.step.fed_back_at_start(self.a);
         let mut length = self.step_of_scale(control, load).min(limit);
-        let reads = self.parameters.beyond_letter();
+        let reads = self.parameters.feedback.echoes();
         for _ in 0..MOST_TIMES {
             let fits = !reads || self.fit_past(length, controlled);
             if self.solve_step(control, length) && fits {
@@ -72,7 +72,7 @@ impl Motion {
             true => &self.step.late,
             false => &self.step.delayed,
         };
-        let past = (&past[..=order], self.parameters.beyond_letter());
+        let past = (&past[..=order], self.parameters.feedback.echoes());
         let Some(solved) = solve((self.u, self.a), length, past, rates) else {
             return false;
         };

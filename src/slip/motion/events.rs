@@ -23,7 +23,7 @@ impl Motion {
                 first = Some((s, event));
             }
         };
-        if self.parameters.alpha_n != 0.0 {
+        if self.parameters.feedback.gains.alpha_n != 0.0 {
             consider(first_zero(&step.n[range], length), Event::LiftOff);
         }
         if self.mode == Mode::Stick {
@@ -102,7 +102,7 @@ impl Motion {
     /// the moment of its release.
     pub(super) fn force_noise(&self) -> f64 {
         let (a, delayed) = (self.step.a[0].abs(), self.step.delayed[0].abs());
-        let load = 1.0 + self.parameters.alpha_n.abs() * (a + delayed);
+        let load = 1.0 + self.parameters.feedback.gains.alpha_n.abs() * (a + delayed);
         (ROUNDING + self.tolerance) * (a + self.parameters.law.mu_s() * load)
     }
 }

@@ -66,22 +66,26 @@ impl Motion {
     /// The larger one of the gains.
     pub(super) fn gain(&self) -> f64 {
         let p = &self.parameters;
-        p.alpha_v.abs().max(p.alpha_n.abs())
+        p.feedback
+            .gains
+            .alpha_v
+            .abs()
+            .max(p.feedback.gains.alpha_n.abs())
     }
 
     /// S where a has always grown at this `rate`.
     pub(super) fn even_signal(&self, rate: f64) -> f64 {
-        rate * self.parameters.tau / (1.0 - self.parameters.memory)
+        rate * self.parameters.feedback.tau / (1.0 - self.parameters.feedback.channel.memory)
     }
 
     /// W = a − R V, with V = `fed_back`.
     pub(super) fn kept(&self, a: f64, fed_back: f64) -> f64 {
-        a - self.parameters.memory * fed_back
+        a - self.parameters.feedback.channel.memory * fed_back
     }
 
     /// The order of the kink of W where V itself jumps.
     pub(super) fn kink_of_jump(&self) -> u32 {
-        match self.parameters.memory == 0.0 {
+        match self.parameters.feedback.channel.memory == 0.0 {
             true => 1,
             false => 0,
         }
@@ -89,7 +93,7 @@ impl Motion {
 
     /// Fills the polynomials of the past, where the feedback has memory or latency.
     pub(super) fn read_past(&mut self, controlled: bool) -> PastLimits {
-        let time = self.t - self.parameters.tau;
+        let time = self.t - self.parameters.feedback.tau;
         let integrator = self.integrator;
         let read = |history: &mut History, time: f64, kink: u32, out: &mut Coefficients| {
             let reach = history.read(time, kink, out);
@@ -102,7 +106,7 @@ impl Motion {
         let delay = read(&mut self.history, time, self.kink, &mut self.step.delayed);
         let latency = match controlled && self.step.is_late {
             true => {
-                let time = self.t - self.parameters.latency;
+                let time = self.t - self.parameters.feedback.channel.latency;
                 read(
                     &mut self.signal,
                     time,
@@ -120,12 +124,12 @@ impl Motion {
     pub(super) fn fit_past(&mut self, length: f64, controlled: bool) -> bool {
         let p = &self.parameters;
         let allowed = self.tolerance * self.a.abs().max(p.law.mu_s());
-        let (from, step) = (self.t - p.tau, &mut self.step);
+        let (from, step) = (self.t - p.feedback.tau, &mut self.step);
         let (delayed, off) = fit(length, |s| self.history.at(from + s));
         step.delayed = delayed;
         let mut fits = off <= allowed;
         if controlled && step.is_late {
-            let from = self.t - p.latency;
+            let from = self.t - p.feedback.channel.latency;
             let (late, off) = fit(length, |s| self.signal.at(from + s));
             step.late = late;
             fits &= off <= allowed;
@@ -149,7 +153,7 @@ impl Motion {
     pub(super) fn keep(&mut self, radius: f64) -> bool {
         let (v, order) = self.signal_of_step();
         let radius = radius.min(self.radius_of_past());
-        let memory = self.parameters.memory;
+        let memory = self.parameters.feedback.channel.memory;
         let has_room = if memory == 0.0 {
             let a = &self.step.a[..=self.step.order];
             self.history.push(self.t, radius, a, self.kink)
@@ -182,7 +186,7 @@ impl Motion {
         let close = 8.0 * f64::EPSILON * self.t.abs().max(1.0);
         let length = self.step.length;
         let met = |limit: &DelayLimit| (length - limit.length).abs() <= close;
-        let [memory, gain] = [self.parameters.memory.abs(), self.gain()];
+        let [memory, gain] = [self.parameters.feedback.channel.memory.abs(), self.gain()];
         let (mut of_a, mut of_v) = (own, SMOOTH);
         if met(&past.delay) && self.feels(past.delay, false, gain.max(memory)) {
             of_v = past.delay.kink;
@@ -194,7 +198,7 @@ impl Motion {
             of_a = of_a.min(self.passed_on(past.latency.kink));
         }
         self.signal_kink = of_a.min(of_v);
-        self.kink = match self.parameters.memory == 0.0 {
+        self.kink = match self.parameters.feedback.channel.memory == 0.0 {
             true => of_a,
             false => self.signal_kink,
         };
@@ -208,8 +212,12 @@ impl Motion {
         }
         let p = &self.parameters;
         let (history, delay, last) = match late {
-            true => (&mut self.signal, p.latency, &self.step.late),
-            false => (&mut self.history, p.tau, &self.step.delayed),
+            true => (
+                &mut self.signal,
+                p.feedback.channel.latency,
+                &self.step.late,
+            ),
+            false => (&mut self.history, p.feedback.tau, &self.step.delayed),
         };
         let before = shifted(&last[..=order_of(last)], self.step.length);
         let time = self.t - delay;
@@ -234,13 +242,13 @@ impl Motion {
     /// in a step corrects errors of R S(t−τ), nor those of V while the block sticks.
     pub(super) fn unforeseen(&self, controlled: bool) -> f64 {
         let p = &self.parameters;
-        let held = match p.memory == 0.0 {
+        let held = match p.feedback.channel.memory == 0.0 {
             true => f64::INFINITY,
-            false => p.tau,
+            false => p.feedback.tau,
         };
-        let stuck = self.mode == Mode::Stick && p.alpha_v != 0.0;
+        let stuck = self.mode == Mode::Stick && p.feedback.gains.alpha_v != 0.0;
         match controlled && stuck && self.step.is_late {
-            true => held.min(p.latency),
+            true => held.min(p.feedback.channel.latency),
             false => held,
         }
     }

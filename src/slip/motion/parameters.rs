@@ -1,6 +1,6 @@
 //! What a motion is given: its parameters, and how exactly it is followed.
 
-use crate::model::FrictionLaw;
+use crate::model::{Feedback, FrictionLaw};
 
 /// What the block does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,49 +35,12 @@ pub struct Parameters {
     pub law: FrictionLaw,
     /// N0/√(κM), the unit of velocity in which the law's speeds are given.
     pub velocity_unit: f64,
-    /// α_v √(M/κ).
-    pub alpha_v: f64,
-    /// α_N/κ.
-    pub alpha_n: f64,
-    /// τ √(κ/M), greater than 0 where control acts.
-    pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
-    pub memory: f64,
-    /// δ √(κ/M) ≥ 0, the latency of the feedback; ignored without gains.
-    pub latency: f64,
+    /// The feedback, without lags.
+    pub feedback: Feedback,
     /// v0 √(κM)/N0.
     pub v0: f64,
     /// When control begins to act.
     pub switch_on: f64,
-}
-
-impl Parameters {
-    /// Whether any gain acts.
-    #[must_use]
-    pub fn controlled(&self) -> bool {
-        self.alpha_v != 0.0 || self.alpha_n != 0.0
-    }
-
-    /// Whether the feedback has memory or latency: more than the letter's own.
-    #[must_use]
-    pub fn beyond_letter(&self) -> bool {
-        self.controlled() && (self.memory != 0.0 || self.latency != 0.0)
-    }
-
-    /// How long the feedback remembers: τ/(1 − |R|) + δ, which is one delay without memory and
-    /// latency.
-    #[must_use]
-    pub fn remembered(&self) -> f64 {
-        match self.beyond_letter() {
-            true => remembered(self.tau, self.memory, self.latency),
-            false => self.tau,
-        }
-    }
-}
-
-/// τ/(1 − |R|) + δ.
-pub(crate) fn remembered(tau: f64, memory: f64, latency: f64) -> f64 {
-    tau / (1.0 - memory.abs()) + latency
 }
 
 /// How steps are made.

@@ -1,6 +1,7 @@
 //! A stuck block whose elongation grows evenly: its steps have no end but release.
 
-use super::{Motion, Parameters, ROUNDING};
+use super::{Motion, ROUNDING};
+use crate::model::Control;
 use crate::slip::series::spread;
 
 /// How evenly the elongation of a stuck block has to grow, in units of the error of a step.
@@ -14,9 +15,12 @@ impl Motion {
     /// back through S smaller than it was.
     pub(super) fn even_rate(&self) -> Option<f64> {
         let p = &self.parameters;
-        let share = p.alpha_v * p.tau / (1.0 - p.memory);
-        let least = match p.beyond_letter() {
-            true => p.alpha_v.abs() * p.tau / (1.0 - p.memory.abs()),
+        let share = p.feedback.gains.alpha_v * p.feedback.tau / (1.0 - p.feedback.channel.memory);
+        let least = match p.feedback.echoes() {
+            true => {
+                p.feedback.gains.alpha_v.abs() * p.feedback.tau
+                    / (1.0 - p.feedback.channel.memory.abs())
+            }
             false => share,
         };
         (least < 1.0).then(|| p.v0 / (1.0 - share))
@@ -26,12 +30,12 @@ impl Motion {
     /// a delay and for a latency. Both then go on so until release.
     pub(super) fn sticks_evenly(&self) -> bool {
         let p = &self.parameters;
-        self.even_since + p.tau.max(p.latency) <= self.t
+        self.even_since + p.feedback.tau.max(p.feedback.channel.latency) <= self.t
     }
 
     /// Fills the polynomials of a block that sticks evenly, which hold for ever.
     pub(super) fn stick_evenly(&mut self, rate: f64) -> f64 {
-        let Parameters { alpha_n, .. } = self.parameters;
+        let Control { alpha_n, .. } = self.parameters.feedback.gains;
         let signal = self.even_signal(rate);
         let step = &mut self.step;
         for c in [&mut step.u, &mut step.a, &mut step.n, &mut step.delayed] {
@@ -52,14 +56,14 @@ impl Motion {
     pub(super) fn note_evenness(&mut self) {
         let step = &self.step;
         let even = self.even_rate().is_some_and(|rate| {
-            let share = (step.length / self.parameters.tau).min(1.0);
+            let share = (step.length / self.parameters.feedback.tau).min(1.0);
             let dies_out = (self.parameters.v0 / rate).min(1.0);
             let allowed = (EVEN * self.tolerance * share * dies_out).max(ROUNDING);
             let a = &step.a[1..=step.order];
             let off = ((a[0] - rate).abs() + spread(a, step.length)) * step.length;
             let stretch = step.a[0].abs().max(self.parameters.law.mu_s());
             off <= allowed * stretch
-                && (!self.parameters.beyond_letter() || {
+                && (!self.parameters.feedback.echoes() || {
                     let allowed = EVEN * self.tolerance * dies_out / (1.0 + self.gain());
                     self.signal_is_even(rate, allowed.max(ROUNDING) * stretch)
                 })
@@ -73,7 +77,7 @@ impl Motion {
     /// delay.
     pub(super) fn longest_stick(&self) -> f64 {
         let p = &self.parameters;
-        let load = 1.0 + (p.alpha_n * p.v0 * p.tau).abs();
+        let load = 1.0 + (p.feedback.gains.alpha_n * p.v0 * p.feedback.tau).abs();
         2.0 * (self.a.abs() + p.law.mu_s() * load) / p.v0.abs()
     }
 }

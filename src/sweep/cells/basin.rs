@@ -12,7 +12,6 @@
 //! unstable state.
 
 use crate::linear::MarginalTolerance;
-use crate::model::Control;
 use crate::model::stop::Stop;
 use crate::slip::case::{Case, CaseError, Start};
 use crate::slip::cycle::NoCycle;
@@ -111,7 +110,7 @@ impl Asked {
             },
         };
         let mut sliding = case.sliding()?;
-        if case.control == Control::default() {
+        if !case.feedback.gains.act() {
             sliding.tau = 0.0;
         }
         let count = sliding.count(MarginalTolerance::default());

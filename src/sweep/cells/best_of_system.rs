@@ -33,8 +33,8 @@ impl Searched {
     pub fn set(self, at: &mut Evaluation, value: f64) {
         match self {
             Self::Own(index) => at.own[index] = value,
-            Self::Memory => at.memory = value,
-            Self::Latency => at.latency = value,
+            Self::Memory => at.channel.memory = value,
+            Self::Latency => at.channel.latency = value,
         }
     }
 }

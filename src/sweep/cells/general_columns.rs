@@ -6,6 +6,7 @@ use super::buffers::TileBuffers;
 use super::line::Places;
 use super::root_columns::{Line, RootColumns};
 use crate::linear::MarginalTolerance;
+use crate::linear::feedback_loop::FeedbackLoop;
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
 use crate::linear::general::{Class, DelayLine, Reason, RootCounter, System};
 use crate::linear::row::Delays;
@@ -13,7 +14,6 @@ use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
-use crate::sweep::input::linear_model::FeedbackLoop;
 use crate::sweep::input::source::{OfLinear, OfRoots, Source};
 
 use crate::sweep::cells::root_columns::relaxation_time;

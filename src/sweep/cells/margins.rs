@@ -6,7 +6,7 @@ use crate::linear::margins::{
     SlidingLaw,
 };
 use crate::model::stop::Stop;
-use crate::model::{Control, FrictionLaw, ModelError, Oscillator};
+use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 
@@ -34,25 +34,25 @@ impl Around {
         let oscillator = setting.oscillator()?;
         let control = setting.control();
         let groups = oscillator.groups(setting.sliding_point()?, control);
-        let time_unit = oscillator.time_unit();
-        let time = |parameter| setting.get(parameter) / time_unit;
+        let Feedback {
+            tau, channel, lags, ..
+        } = setting.feedback().dimensionless(&oscillator);
         let of = margins::Setting {
             groups,
-            tau: time(Parameter::Tau),
-            decay: decay * time_unit,
+            tau,
+            decay: decay * oscillator.time_unit(),
         };
         let extended = setting.beyond_letter(&Parameter::BEYOND_LETTER);
-        let beyond = extended.map(|_| Beyond {
-            memory: setting.get(Parameter::Memory),
-            latency: time(Parameter::Latency),
-            load_lag: time(Parameter::LoadLag),
-            velocity_lag: time(Parameter::VelocityLag),
-            sensor_lag: time(Parameter::SensorLag),
-        });
+        let beyond = extended.map(|_| Beyond { channel, lags });
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Self {
             of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),
-            line: on_axis.map(|beyond| (beyond.system(groups), setting.get(Parameter::Tau))),
+            line: on_axis.map(|beyond| {
+                (
+                    beyond.of_groups(groups).system(),
+                    setting.get(Parameter::Tau),
+                )
+            }),
             oscillator,
             control,
             law: setting

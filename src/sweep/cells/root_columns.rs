@@ -5,13 +5,13 @@ use num_complex::Complex64;
 use super::buffers::Column;
 use super::line::Places;
 use crate::linear::equation::Equation;
+use crate::linear::feedback_loop::{FeedbackLoop, PerGroup};
 use crate::linear::general::RootCounter;
 use crate::linear::general::rightmost::scaled_margin;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
 use crate::sweep::input::field::Field;
-use crate::sweep::input::linear_model::{FeedbackLoop, PerGroup};
 use crate::sweep::input::source::{OfRoots, Slope, Source};
 
 /// An equation with roots that depend on the groups.

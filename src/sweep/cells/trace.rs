@@ -345,7 +345,7 @@ impl Sample {
             x: (begun.x + step.displacement(s)) * units.length,
             x_dot: u * units.velocity,
             a: a * units.length,
-            v: (p.v0 + p.alpha_v * difference) * units.velocity,
+            v: (p.v0 + p.feedback.gains.alpha_v * difference) * units.velocity,
             n: n * units.force,
             mode: begun.mode,
         }

@@ -12,7 +12,6 @@ use crate::model::elementary::pow;
 use crate::model::stop::Stop;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
-use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::regime_at_v0::RegimeAtV0;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
@@ -45,23 +44,18 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
     let Some(law) = setting.friction_law()? else {
         return Err(ModelError::of_law("a friction law"));
     };
-    let control = setting.control();
-    let tau = setting.get(Parameter::Tau);
-    let controlled = control.alpha_v != 0.0 || control.alpha_n != 0.0;
+    let feedback = setting.feedback();
+    let tau = feedback.tau;
     ModelError::check(
         "tau",
         tau,
         "greater than 0 where a gain acts",
-        tau > 0.0 || !controlled,
+        tau > 0.0 || !feedback.gains.act(),
     )?;
     let problem = Problem {
         law,
         velocity_unit: units.velocity,
-        alpha_v: control.alpha_v * units.time,
-        alpha_n: control.alpha_n / oscillator.stiffness(),
-        tau: tau / units.time,
-        memory: setting.get(Parameter::Memory),
-        latency: setting.get(Parameter::Latency) / units.time,
+        feedback: feedback.dimensionless(&oscillator),
         stop: Stop::default(),
         options: Options::default(),
     };
@@ -365,7 +359,7 @@ const SMALLEST_COUNTED: f64 = 1e-6;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::FrictionLaw;
+    use crate::model::{Feedback, FrictionLaw};
 
     fn critical(transition: Transition, vc: f64, v_liftoff: f64) -> CriticalVelocity {
         let end = if v_liftoff.is_nan() { vc } else { v_liftoff };
@@ -463,11 +457,7 @@ mod tests {
         let problem = Problem {
             law: FrictionLaw::coulomb(0.5, 2.0).unwrap(),
             velocity_unit: 1.0,
-            alpha_v: 0.0,
-            alpha_n: 0.0,
-            tau: 1.0,
-            memory: 0.0,
-            latency: 0.0,
+            feedback: Feedback::new(0.0, 0.0, 1.0),
             stop: Stop::default(),
             options: Options::default(),
         };

@@ -21,7 +21,7 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
-use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
+use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::{OfLinear, Source};
 use crate::sweep::plan::Plan;
@@ -203,7 +203,7 @@ impl<'p> Worker<'p> {
     /// Computes the cells of a line of a general system.
     fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &Stop) {
         let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
-        let of_loop = sensitive.then(|| FeedbackLoop::of(&self.lines.setting).ok());
+        let of_loop = sensitive.then(|| self.lines.setting.feedback_loop().ok());
         let of_loop = of_loop.flatten();
         let line = GeneralLine {
             system,

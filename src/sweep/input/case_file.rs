@@ -329,7 +329,7 @@ mod tests {
         assert_eq!(said.case.initial_state(), (0.1, 0.4));
         assert!(!said.start_assumed);
         assert_eq!(case.switch_on, f64::INFINITY, "nothing to switch on");
-        assert_eq!((case.tau, case.horizon), (0.0, 1000.0));
+        assert_eq!((case.feedback.tau, case.horizon), (0.0, 1000.0));
         assert_eq!(case.accuracy, Accuracy::default());
         assert_eq!((spec.until, spec.sampling), (None, Sampling::PerStep(24)));
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::system::parameter::OwnParameter;
 use super::system::{Evaluation, SystemModel};
+use crate::model::Feedback;
 
 /// A system from a file, with values of its own parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +39,8 @@ impl OwnSystem {
     }
 
     /// Copies its values, and those of delay, memory and latency, into `at` for evaluation.
-    pub(super) fn put_into(&self, at: &mut Evaluation, [tau, memory, latency]: [f64; 3]) {
+    pub(super) fn put_into(&self, at: &mut Evaluation, feedback: Feedback) {
         at.own.clone_from(&self.values);
-        (at.tau, at.memory, at.latency) = (tau, memory, latency);
+        (at.tau, at.channel) = (feedback.tau, feedback.channel);
     }
 }

@@ -145,7 +145,7 @@ impl Setting {
     pub fn evaluation(&self) -> Option<(&SystemModel, Evaluation)> {
         let system = self.system.as_ref()?;
         let mut at = Evaluation::default();
-        system.put_into(&mut at, self.every_systems());
+        system.put_into(&mut at, self.feedback());
         Some((&system.model, at))
     }
 
@@ -155,13 +155,8 @@ impl Setting {
     /// Where an expression has no finite value.
     pub fn own_system(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
         let system = self.system.as_ref()?;
-        system.put_into(at, self.every_systems());
+        system.put_into(at, self.feedback());
         Some(system.model.at(at))
-    }
-
-    /// The parameters of every system besides its own: delay, memory and latency.
-    fn every_systems(&self) -> [f64; 3] {
-        [Parameter::Tau, Parameter::Memory, Parameter::Latency].map(|p| self.get(p))
     }
 
     /// The value of the quantity of an axis.

@@ -7,7 +7,7 @@ use super::keys::{SIMULATION, names};
 use super::parameter::{LARGEST, Parameter};
 use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
-use crate::model::{Control, ModelError, Shown};
+use crate::model::{ModelError, Shown};
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
 
@@ -150,9 +150,9 @@ impl Simulation {
             },
         };
         // Without gains there is nothing to switch on.
-        let switch_on = match setting.control() == Control::default() {
-            true => f64::INFINITY,
-            false => phase.unwrap_or(switch_on),
+        let switch_on = match setting.control().act() {
+            true => phase.unwrap_or(switch_on),
+            false => f64::INFINITY,
         };
         let begun = if switch_on.is_finite() {
             switch_on
@@ -163,10 +163,7 @@ impl Simulation {
         Ok(Some(Case {
             oscillator,
             law,
-            control: setting.control(),
-            tau: setting.get(Parameter::Tau),
-            memory: setting.get(Parameter::Memory),
-            latency: setting.get(Parameter::Latency),
+            feedback: setting.feedback(),
             v0,
             switch_on,
             start,

@@ -29,6 +29,7 @@ use super::system::System;
 use super::turning::RightOf;
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::lobes::LobeControl;
+use crate::model::Channel;
 
 /// Longest steps along the memory and the latency.
 const MEMORY_STEP: f64 = 0.01;
@@ -360,7 +361,11 @@ impl Problem {
         let [Ok(open), Ok(gain)] = polynomials else {
             return false;
         };
-        let system = System::feedback(open, gain, self.memory, end.latency);
+        let channel = Channel {
+            memory: self.memory,
+            latency: end.latency,
+        };
+        let system = System::feedback(open, gain, channel);
         RootCounter::new(&system).right_of(end.tau, BESIDE) == RightOf::Roots(0)
     }
 }
@@ -442,7 +447,8 @@ mod tests {
                 };
                 let open = Polynomial::new(&[1.0, b, 1.0]).unwrap();
                 let gain = Polynomial::new(&[gain * b, gain]).unwrap();
-                let line = DelayLine::of(&System::feedback(open, gain, memory, latency));
+                let line =
+                    DelayLine::of(&System::feedback(open, gain, Channel { memory, latency }));
                 let mut stable = line.stable_intervals().take(8);
                 stable.any(|s| s.from < end.tau + 0.2 && end.tau - 0.2 < s.to)
             })

@@ -7,7 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::super::parts::{Angle, Feedback};
+use super::super::parts::{Angle, FeedbackForm};
 use super::super::right_of::{Factors, RootCounter, SAME_TURN};
 use super::super::switches::{Switch, Switches};
 use super::super::system::Class;
@@ -16,6 +16,7 @@ use super::on_line::{Form, OnLine};
 use super::sum::Sum;
 use super::wave::TooMany;
 use super::window::Window;
+use crate::model::Channel;
 use crate::model::elementary::{arg, atan2, sincos};
 
 /// The part of a turn below which a root near the real axis cannot have made a whole one.
@@ -66,7 +67,7 @@ impl<'f> Way<'f> {
         let sums = match form {
             Form::Latency => None,
             Form::Delay => {
-                let (latency, memory) = (on_line.latency, on_line.memory);
+                let Channel { memory, latency } = on_line.channel;
                 let first = Sum::new(&on_line.difference(1.0, 1.0), switches, |omega| {
                     let [open, gain] = arguments.at(omega);
                     [open, gain + PI - omega * latency]
@@ -116,11 +117,11 @@ impl<'f> Way<'f> {
             Some((first, second)) => {
                 let (b, a) = of.at(omega, 0.0);
                 let (b, a) = (b.value, a.value);
-                let turned = gain - omega * of.latency;
+                let turned = gain - omega * of.channel.latency;
                 let before = first.argument(omega, [open, turned + PI], [b, -a]);
                 let behind = second.as_ref().map_or(turned, |sum| {
-                    let arguments = [turned, open + half_turn(-of.memory)];
-                    sum.argument(omega, arguments, [a, -of.memory * b])
+                    let arguments = [turned, open + half_turn(-of.channel.memory)];
+                    sum.argument(omega, arguments, [a, -of.channel.memory * b])
                 });
                 [before, behind]
             }
@@ -166,7 +167,7 @@ impl<'f> Way<'f> {
                 self.turn(&switch).is_some_and(&mut each)
             })
             .map_err(undecided)?;
-        let longest = self.on_line.tau + self.on_line.latency;
+        let longest = self.on_line.tau + self.on_line.channel.latency;
         if start.open_below * longest > NO_TURN {
             return Err(NoNumber::Undecided);
         }
@@ -200,13 +201,13 @@ impl RootCounter {
     /// The number of roots that [`RootCounter::right_of`] tells, with latency. The form that costs
     /// less is tried first, with frequencies to no more digits than a turn takes. Where that leaves
     /// the number open, all digits are used, and then the other form.
-    pub(in super::super) fn late(&self, feedback: &Feedback, tau: f64, line: f64) -> RightOf {
+    pub(in super::super) fn late(&self, feedback: &FeedbackForm, tau: f64, line: f64) -> RightOf {
         let on_line = match self.late_line(feedback, tau, line) {
             Ok(on_line) => on_line,
             Err(why) => return why.into(),
         };
         let window = on_line.window();
-        let swings = (tau - feedback.latency) * (window.to - window.from);
+        let swings = (tau - feedback.channel.latency) * (window.to - window.from);
         let forms = if swings < CHEAPER {
             [Form::Latency, Form::Delay]
         } else {
@@ -219,7 +220,7 @@ impl RootCounter {
             .unwrap_or(RightOf::Undecided)
     }
 
-    fn late_right_of(&self, feedback: &Feedback, form: Form, tau: f64, line: f64) -> RightOf {
+    fn late_right_of(&self, feedback: &FeedbackForm, form: Form, tau: f64, line: f64) -> RightOf {
         match self.late_line(feedback, tau, line) {
             Ok(on_line) => self.by_form(&on_line, form, (on_line.window(), 0.0)),
             Err(why) => why.into(),
@@ -229,7 +230,7 @@ impl RootCounter {
     fn by_form(&self, on_line: &OnLine, form: Form, to: (Window, f64)) -> RightOf {
         let turn_by = match form {
             Form::Delay => on_line.tau,
-            Form::Latency => on_line.latency,
+            Form::Latency => on_line.channel.latency,
         };
         let mut turned = WholeTurns::at(turn_by);
         let without_turns = self.turns_of(on_line, form, to, |turn| turned.add(&turn));
@@ -252,7 +253,7 @@ impl RootCounter {
         })
     }
 
-    fn late_line(&self, feedback: &Feedback, tau: f64, line: f64) -> Result<OnLine, NoNumber> {
+    fn late_line(&self, feedback: &FeedbackForm, tau: f64, line: f64) -> Result<OnLine, NoNumber> {
         let open = NoNumber::Undecided;
         match self.system().class() {
             Class::DegreeUnknown | Class::Refused => return Err(open),

@@ -1,4 +1,4 @@
-//! Feedback that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
+//! FeedbackForm that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
 //!
 //! On the imaginary axis either delay is a line while the other one is fixed. Crossings follow from
 //! (4) and (5) of [`general::line`](super::line) as without latency, but |P|² − |Q|² swings with
@@ -24,10 +24,11 @@ mod sum;
 mod wave;
 mod window;
 
-use super::parts::{Angle, Feedback};
+use super::parts::{Angle, FeedbackForm};
 use super::polynomial::Polynomial;
 use super::switches::Switches;
 use super::system::{Class, System};
+use crate::model::Channel;
 pub(super) use budget::{Budget, MOST_STEPS_OF_A_CELL};
 use on_line::OnLine;
 
@@ -35,14 +36,14 @@ pub use on_line::Form;
 
 impl System {
     /// The feedback, where it comes late.
-    pub(super) fn late(&self) -> Option<&Feedback> {
-        self.feedback.as_ref().filter(|f| f.latency > 0.0)
+    pub(super) fn late(&self) -> Option<&FeedbackForm> {
+        self.feedback.as_ref().filter(|f| f.channel.latency > 0.0)
     }
 
     /// The latency δ; 0 where there is none.
     #[must_use]
     pub fn latency(&self) -> f64 {
-        self.late().map_or(0.0, |f| f.latency)
+        self.late().map_or(0.0, |f| f.channel.latency)
     }
 
     /// A frequency beyond which no root lies on Re λ = `line` at the delay `tau` ≥ 0, for these
@@ -60,22 +61,24 @@ impl System {
         if self.uncontrolled() {
             return Some(*self);
         }
-        let Feedback {
-            open, gain, memory, ..
+        let FeedbackForm {
+            open,
+            gain,
+            channel,
         } = self.feedback?;
-        let mut late = Self::feedback(open, gain, memory, latency);
+        let mut late = Self::feedback(open, gain, Channel { latency, ..channel });
         late.source = self.source;
         Some(late)
     }
 }
 
-impl Feedback {
+impl FeedbackForm {
     /// The class with latency, by B and R alone: only without latency do P and Q have degrees.
     pub(super) fn late_class(&self) -> Class {
         if !self.open.degree_known() {
             return Class::DegreeUnknown;
         }
-        let ratio = self.memory.abs();
+        let ratio = self.channel.memory.abs();
         if self.open.is_zero() || ratio == 1.0 || self.gain.degree() >= self.open.degree() {
             return Class::Refused;
         }

@@ -21,12 +21,13 @@
 
 use num_complex::Complex64;
 
-use super::super::parts::{Angle, Decay, Feedback, remembered};
+use super::super::parts::{Angle, Decay, FeedbackForm, remembered};
 use super::super::polynomial::{At, Polynomial};
 use super::wave::Wave;
 use super::window::{Window, before_zeros, beyond_zeros};
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::rounded::Rounded;
+use crate::model::Channel;
 use crate::model::elementary::sincos;
 
 /// Which of the two delays turns the feedback term in the argument principle.
@@ -48,10 +49,10 @@ pub(in super::super) struct OnLine {
     /// |B|², and |𝒜|² in `fed`.
     own: Polynomial,
     fed: Polynomial,
-    pub memory: f64,
+    /// R and δ.
+    pub channel: Channel,
     pub line: f64,
     pub tau: f64,
-    pub latency: f64,
     /// κ.
     pub decay: Decay,
 }
@@ -67,8 +68,8 @@ fn plus(a: Rounded, b: Rounded) -> Rounded {
 impl OnLine {
     /// B and A on the line Re λ = `line` at the delay `tau`; none where e^(−στ) or e^(−σδ)
     /// overflows.
-    pub(in super::super) fn new(feedback: &Feedback, tau: f64, line: f64) -> Option<Self> {
-        let late = Decay::new(line, feedback.latency)?;
+    pub(in super::super) fn new(feedback: &FeedbackForm, tau: f64, line: f64) -> Option<Self> {
+        let late = Decay::new(line, feedback.channel.latency)?;
         let open = feedback.open.shifted(line);
         let mut gain = feedback.gain.shifted(line);
         if line != 0.0 {
@@ -79,10 +80,9 @@ impl OnLine {
             fed: gain.real_product(&gain),
             open,
             gain,
-            memory: feedback.memory,
+            channel: feedback.channel,
             line,
             tau,
-            latency: feedback.latency,
             decay: Decay::new(line, tau)?,
         })
     }
@@ -93,7 +93,7 @@ impl OnLine {
 
     /// Whether the line lies right of the one at which roots accumulate; none where that is open.
     pub(in super::super) fn right_of_essential(&self) -> Option<bool> {
-        let kept = remembered(self.memory.abs(), self.decay);
+        let kept = remembered(self.channel.memory.abs(), self.decay);
         kept.decided().then_some(kept.value > 0.0)
     }
 
@@ -108,8 +108,8 @@ impl OnLine {
         let (own, fed) = (&self.own, &self.fed);
         // The ends of (5) as numerators and denominators.
         let ends = [
-            (self.one_and(1.0), self.one_and(self.memory)),
-            (self.decay.lost, remembered(self.memory, self.decay)),
+            (self.one_and(1.0), self.one_and(self.channel.memory)),
+            (self.decay.lost, remembered(self.channel.memory, self.decay)),
         ];
         let [plus, minus] = ends.map(|(above, below)| (above.value / below.value).abs());
         let [outer, inner] = if plus >= minus { [0, 1] } else { [1, 0] };
@@ -145,7 +145,7 @@ impl OnLine {
     /// D(σ) = B(1 − Rκ) − 𝒜(1 − κ).
     pub(in super::super) fn on_real_axis(&self) -> Rounded {
         let (open, gain) = (self.open.coefficient(0), self.gain.coefficient(0));
-        let own = open.times(remembered(self.memory, self.decay));
+        let own = open.times(remembered(self.channel.memory, self.decay));
         if self.on_axis() {
             return own;
         }
@@ -168,7 +168,7 @@ impl OnLine {
         let (open, gain) = (self.open.coefficient(0), self.gain.coefficient(0));
         let (twice, u, sum, mirror);
         if self.on_axis() {
-            let memory = Rounded::sum([1.0, self.memory]);
+            let memory = Rounded::sum([1.0, self.channel.memory]);
             twice = exactly(2.0);
             u = own.scaled(memory).plus(&along, -2.0);
             sum = open;
@@ -178,8 +178,9 @@ impl OnLine {
             let square = kappa.times(kappa);
             // 1 − κ² and 1 − κ²R without cancellation.
             let lost = lost.times(self.one_and(1.0));
-            let middle = plus(lost, square.scaled(1.0 - self.memory));
-            let outer = remembered(self.memory, self.decay).times(self.one_and(self.memory));
+            let middle = plus(lost, square.scaled(1.0 - self.channel.memory));
+            let outer = remembered(self.channel.memory, self.decay)
+                .times(self.one_and(self.channel.memory));
             twice = middle.scaled(2.0);
             u = own
                 .scaled(outer)
@@ -187,7 +188,7 @@ impl OnLine {
                 .plus(&fed.scaled(lost), 1.0);
             sum = self.on_real_axis();
             mirror = open
-                .times(self.one_and(self.memory))
+                .times(self.one_and(self.channel.memory))
                 .minus(gain.times(self.one_and(1.0)));
         }
         Wave {
@@ -197,14 +198,14 @@ impl OnLine {
                 along.scaled(twice),
                 across.scaled(twice.scaled(-1.0)),
             ],
-            t: self.latency,
+            t: self.channel.latency,
         }
     }
 
     /// The function (4), which swings with the delay.
     fn wave_of_delay(&self) -> Wave {
         let (own, fed) = (&self.own, &self.fed);
-        let kept = remembered(self.memory, self.decay);
+        let kept = remembered(self.channel.memory, self.decay);
         let mut u = own.scaled(kept.times(kept));
         if !self.on_axis() {
             let lost = self.decay.lost;
@@ -216,7 +217,7 @@ impl OnLine {
             u = u.with_constant(self.on_real_axis().times(mirror));
         }
         let twice = self.decay.kappa.scaled(2.0);
-        let swing = own.scaled(exactly(self.memory)).plus(fed, -1.0);
+        let swing = own.scaled(exactly(self.channel.memory)).plus(fed, -1.0);
         Wave {
             parts: [u, swing.scaled(twice), Polynomial::ZERO],
             t: self.tau,
@@ -227,10 +228,10 @@ impl OnLine {
     pub(in super::super) fn at(&self, omega: f64, error: f64) -> (At, At) {
         let open = self.open.on_axis(omega, error);
         let gain = self.gain.on_axis(omega, error);
-        let angle = omega * self.latency;
+        let angle = omega * self.channel.latency;
         let (sin, cos) = sincos(angle);
         let size = gain.value.norm_sqr().sqrt();
-        let turned = size * (2.0 * f64::EPSILON * (angle + 2.0) + self.latency * error);
+        let turned = size * (2.0 * f64::EPSILON * (angle + 2.0) + self.channel.latency * error);
         let late = At {
             value: gain.value * Complex64::new(cos, -sin),
             error: gain.error + turned,
@@ -244,7 +245,7 @@ impl OnLine {
         match form {
             Form::Delay => {
                 let (open, late) = self.at(omega, error);
-                Angle::of_feedback(open, late, self.memory)
+                Angle::of_feedback(open, late, self.channel.memory)
             }
             Form::Latency => {
                 let product = self.echoes(omega);
@@ -259,7 +260,7 @@ impl OnLine {
                 let error = 2.0
                     * (relative(open.value, open.error)
                         + relative(gain.value, gain.error)
-                        + relative(kept, self.memory.abs() * turned + f64::EPSILON)
+                        + relative(kept, self.channel.memory.abs() * turned + f64::EPSILON)
                         + relative(lost, turned + f64::EPSILON * lost.l1_norm()))
                     + 8.0 * f64::EPSILON;
                 let value = open.value * kept * (gain.value * lost).conj();
@@ -274,6 +275,6 @@ impl OnLine {
     /// 1 − R E and 1 − E.
     pub(in super::super) fn echoes(&self, omega: f64) -> [Complex64; 2] {
         let lost = one_minus_exp(Complex64::new(-self.line * self.tau, -omega * self.tau));
-        [1.0 - self.memory + self.memory * lost, lost]
+        [1.0 - self.channel.memory + self.channel.memory * lost, lost]
     }
 }

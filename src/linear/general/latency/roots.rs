@@ -2,29 +2,29 @@
 
 use num_complex::Complex64;
 
-use super::super::parts::{Feedback, exponential, late};
+use super::super::parts::{FeedbackForm, exponential, late};
 use super::super::polynomial::Polynomial;
 use crate::linear::collocation::{Late, late_eigenvalues};
 use crate::model::elementary::{exp, pow};
 
-impl Feedback {
+impl FeedbackForm {
     /// How much larger than A the fed back A e^(−λδ) is at λ, with what rounding of λδ adds.
     pub(in super::super) fn late_size(&self, lambda: Complex64) -> f64 {
-        if self.latency == 0.0 {
+        if self.channel.latency == 0.0 {
             return 1.0;
         }
-        exp(-lambda.re * self.latency) * (1.0 + self.latency * lambda.l1_norm())
+        exp(-lambda.re * self.channel.latency) * (1.0 + self.channel.latency * lambda.l1_norm())
     }
 
     /// 𝒫, 𝒫′, 𝒬 and 𝒬′ of (1) in [`on_line`](super::on_line).
     pub(in super::super) fn pair(&self, lambda: Complex64) -> [Complex64; 4] {
         let [open, open_slope, _] = self.open.jet(lambda);
-        let [fed, fed_slope, _] = late(self.gain.jet(lambda), self.latency, lambda);
+        let [fed, fed_slope, _] = late(self.gain.jet(lambda), self.channel.latency, lambda);
         [
             open - fed,
             open_slope - fed_slope,
-            fed - self.memory * open,
-            fed_slope - self.memory * open_slope,
+            fed - self.channel.memory * open,
+            fed_slope - self.channel.memory * open_slope,
         ]
     }
 
@@ -33,15 +33,15 @@ impl Feedback {
         let (b, a) = (self.open.jet(lambda), self.gain.jet(lambda));
         let third = |p: &Polynomial| p.derivative().jet(lambda)[2];
         let (b_third, a_third) = (third(&self.open), third(&self.gain));
-        let delta = self.latency;
+        let delta = self.channel.latency;
         let fed = late(a, delta, lambda);
         let fed_third = (a_third - delta * (3.0 * a[2] - delta * (3.0 * a[1] - delta * a[0])))
             * exponential(-delta * lambda);
         [
             b_third - fed_third,
-            fed[1] - self.memory * b[1],
-            fed[2] - self.memory * b[2],
-            fed_third - self.memory * b_third,
+            fed[1] - self.channel.memory * b[1],
+            fed[2] - self.channel.memory * b[2],
+            fed_third - self.channel.memory * b_third,
         ]
     }
 
@@ -49,8 +49,8 @@ impl Feedback {
     /// (1 − |R|κ)|B| ≤ e^(−σδ)(1 + κ)|A|.
     pub(in super::super) fn late_root_bound(&self, tau: f64, line: f64) -> f64 {
         let kappa = exp(-line * tau);
-        let kept = 1.0 - self.memory.abs() * kappa * (1.0 + 4.0 * f64::EPSILON);
-        let factor = exp(-line * self.latency) * (1.0 + kappa) / kept;
+        let kept = 1.0 - self.channel.memory.abs() * kappa * (1.0 + 4.0 * f64::EPSILON);
+        let factor = exp(-line * self.channel.latency) * (1.0 + kappa) / kept;
         let n = self.open.degree();
         let size = |p: &Polynomial, k: usize| {
             let c = p.coefficient(k);
@@ -80,10 +80,10 @@ impl Feedback {
         let own = self.open.times(&parabola(half)?).ok()?;
         let fed = self
             .gain
-            .times(&parabola(half + tau * self.latency)?)
+            .times(&parabola(half + tau * self.channel.latency)?)
             .ok()?;
-        let kept = self.open.plus(&self.open, -self.memory);
-        Some(kept.plus(&own, self.memory).plus(&fed, -1.0))
+        let kept = self.open.plus(&self.open, -self.channel.memory);
+        Some(kept.plus(&own, self.channel.memory).plus(&fed, -1.0))
     }
 
     /// Approximate roots by collocation of what is fed back, A x, over the time τ + δ.
@@ -92,9 +92,8 @@ impl Feedback {
             &Late {
                 open: self.open.coefficients(),
                 gain: self.gain.coefficients(),
-                memory: self.memory,
+                channel: self.channel,
                 tau,
-                latency: self.latency,
             },
             nodes,
         )

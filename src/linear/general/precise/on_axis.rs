@@ -13,7 +13,7 @@
 
 use std::array::from_fn;
 
-use super::super::parts::Feedback;
+use super::super::parts::FeedbackForm;
 use super::super::system::System;
 use super::number::{Number, UNIT};
 use super::polynomial::{BOUNDS, Complex, Jet, Precise};
@@ -136,10 +136,10 @@ impl OnAxis {
             };
         };
         let [b, a] = open_and_gain(system, feedback);
-        let memory = Number::of(feedback.memory);
+        let memory = Number::of(feedback.channel.memory);
         let parts = [b.scaled(Number::ONE + memory), a.scaled(Number::of(-2.0))];
         Self {
-            u: Swinging::new(parts, feedback.latency),
+            u: Swinging::new(parts, feedback.channel.latency),
             v: Swinging::still(b),
             kept: Number::ONE - memory,
         }
@@ -149,7 +149,7 @@ impl OnAxis {
     pub(super) fn of_latencies(system: &System, tau: f64) -> Option<Self> {
         let feedback = system.feedback.as_ref()?;
         let [b, a] = open_and_gain(system, feedback);
-        let remembered = b.scaled(Number::of(-feedback.memory));
+        let remembered = b.scaled(Number::of(-feedback.channel.memory));
         Some(Self {
             u: Swinging::new([b.plus(&a), remembered.minus(&a)], tau),
             v: Swinging::new([b.minus(&a), remembered.plus(&a)], tau),
@@ -177,7 +177,7 @@ impl OnAxis {
 }
 
 /// B and A.
-fn open_and_gain(system: &System, feedback: &Feedback) -> [Precise; 2] {
+fn open_and_gain(system: &System, feedback: &FeedbackForm) -> [Precise; 2] {
     match system.source {
         Some(source) => source.polynomials(),
         None => [&feedback.open, &feedback.gain].map(Precise::of),

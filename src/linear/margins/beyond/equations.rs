@@ -26,9 +26,10 @@ use num_complex::Complex64;
 
 use super::super::equations::OnLine;
 use super::super::setting::Setting;
-use super::feedback::{Beyond, polynomial, times};
+use super::feedback::Beyond;
 use super::sum::{Part, Sum, Terms, conjugate};
 use crate::linear::characteristic::one_minus_exp;
+use crate::linear::feedback_loop::{polynomial, times};
 use crate::linear::general::{Polynomial, System};
 use crate::linear::rounded::Rounded;
 use crate::model::Groups;
@@ -82,14 +83,14 @@ fn plus(a: Rounded, b: Rounded) -> Rounded {
 
 impl Equations {
     pub(in super::super) fn new(setting: &Setting, beyond: &Beyond) -> Self {
-        let [open, gain] = beyond.polynomials(setting.groups);
+        let [open, gain] = beyond.of_groups(setting.groups).polynomials();
         Self {
             setting: *setting,
             beyond: *beyond,
             open,
             gain,
             delayed: growth(setting.decay * setting.tau),
-            late: growth(setting.decay * beyond.latency),
+            late: growth(setting.decay * beyond.channel.latency),
         }
     }
 
@@ -107,7 +108,7 @@ impl Equations {
             return self.product(&self.gain, &self.open);
         }
         let Groups { b, a_v, a_n } = groups;
-        let lags = self.beyond.lags();
+        let lags = self.beyond.lag_polynomials();
         let moving = Polynomial::of(3, |k| match k {
             0 => exactly(b),
             1 => plus(exactly(1.0), exactly(-b).times(exactly(b))),
@@ -123,7 +124,7 @@ impl Equations {
     fn values(&self, omega: f64) -> Values {
         let lambda = Complex64::new(-self.setting.decay, omega);
         let difference = one_minus_exp(-self.setting.tau * lambda);
-        let memory = self.beyond.memory;
+        let memory = self.beyond.channel.memory;
         let kept = 1.0 - memory + memory * difference;
         let passed = self.beyond.late(lambda) * difference;
         Values {
@@ -138,7 +139,7 @@ impl Equations {
     /// u, v, w and y of (3).
     fn of_slope(&self) -> [Polynomial; 4] {
         let Groups { a_v, a_n, .. } = self.setting.groups;
-        let lags = self.beyond.lags();
+        let lags = self.beyond.lag_polynomials();
         let y = Polynomial::ZERO.plus(&lags.load, a_v);
         let variable = Polynomial::variable();
         [
@@ -151,8 +152,8 @@ impl Equations {
 
     /// The left side of (3) without |1 − R E|² Im[u v*], and with it.
     fn slope_terms(&self) -> [Terms; 2] {
-        let (tau, latency) = (self.setting.tau, self.beyond.latency);
-        let (memory, q, p) = (self.beyond.memory, self.delayed, self.late);
+        let (tau, latency) = (self.setting.tau, self.beyond.channel.latency);
+        let (memory, q, p) = (self.beyond.channel.memory, self.delayed, self.late);
         let square = q.times(q);
         let [u, v, w, y] = self.of_slope();
         let minus = |number: Rounded| number.scaled(-1.0);
@@ -189,7 +190,7 @@ impl Equations {
 
     fn system(&self, factor: f64) -> System {
         let gain = Polynomial::ZERO.plus(&self.gain, factor);
-        System::feedback(self.open, gain, self.beyond.memory, self.beyond.latency)
+        System::feedback(self.open, gain, self.beyond.channel)
     }
 }
 
@@ -198,9 +199,9 @@ impl OnLine for Equations {
 
     /// The left side of (1), or of (5) on the imaginary axis.
     fn gain(&self) -> Sum {
-        let (tau, latency) = (self.setting.tau, self.beyond.latency);
+        let (tau, latency) = (self.setting.tau, self.beyond.channel.latency);
         let product = self.loop_product();
-        let memory = self.beyond.memory;
+        let memory = self.beyond.channel.memory;
         if self.setting.decay == 0.0 {
             let half = 0.5 * tau;
             let mut terms = Terms::new(Part::Real).plus(&product, exactly(1.0), latency + half);
@@ -239,7 +240,7 @@ impl OnLine for Equations {
     /// On the imaginary axis without latency kA/B = (1 − R E)/(1 − E) lies on Re = (1 + R)/2, so
     /// that Re[A B*] has to be positive.
     fn highest_with_gain(&self) -> f64 {
-        if self.setting.decay > 0.0 || self.beyond.latency > 0.0 {
+        if self.setting.decay > 0.0 || self.beyond.channel.latency > 0.0 {
             return f64::INFINITY;
         }
         let product = self.loop_product();
@@ -274,11 +275,12 @@ impl OnLine for Equations {
     /// Beyond ω = 1 the highest power outweighs all others where (1 − |R|q)² |L|² ω(ω² + σ² − 1)
     /// does.
     fn slope_bound(&self) -> f64 {
-        let kept = 1.0 - self.beyond.memory.abs() * (self.delayed.value + self.delayed.error);
+        let kept =
+            1.0 - self.beyond.channel.memory.abs() * (self.delayed.value + self.delayed.error);
         if kept.is_nan() || kept <= 0.0 {
             return f64::INFINITY;
         }
-        let all = self.beyond.lags().all;
+        let all = self.beyond.lag_polynomials().all;
         // |L|² is even in ω, and all its powers are positive.
         let lags = self.product(&all, &all);
         let even = Polynomial::of(lags.degree(), |k| exactly(lags.coefficient(k).value.abs()));
@@ -292,7 +294,7 @@ impl OnLine for Equations {
 
     /// |N|² − |M|².
     fn unit_loop(&self) -> Sum {
-        let (memory, q) = (self.beyond.memory, self.delayed);
+        let (memory, q) = (self.beyond.channel.memory, self.delayed);
         let square = q.times(q);
         let fed = self.product(&self.gain, &self.gain);
         let fed = fed.scaled(self.late.times(self.late));

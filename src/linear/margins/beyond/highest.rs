@@ -28,7 +28,7 @@ impl Beyond {
     /// beyond one frequency makes the next, lower one.
     pub(in super::super) fn highest(&self, up_to: UpTo, decay: f64) -> f64 {
         let delayed = exp(decay * up_to.tau) * (1.0 + 1e-12);
-        let kept = 1.0 - self.memory.abs() * delayed;
+        let kept = 1.0 - self.channel.memory.abs() * delayed;
         if kept.is_nan() || kept <= 0.0 {
             return f64::INFINITY;
         }
@@ -38,9 +38,9 @@ impl Beyond {
                 let (re, im) = (1.0 - time * decay, time * omega);
                 (re * re + im * im).sqrt()
             };
-            let sensor = lag(self.sensor_lag);
-            let a_v = up_to.a_v.abs() / (lag(self.velocity_lag) * sensor);
-            let a_n = up_to.a_n.abs() / (lag(self.load_lag) * sensor);
+            let sensor = lag(self.lags.sensor);
+            let a_v = up_to.a_v.abs() / (lag(self.lags.velocity) * sensor);
+            let a_n = up_to.a_n.abs() / (lag(self.lags.load) * sensor);
             root_bound(up_to.b, a_v, a_n, control) * (1.0 + 1e-12)
         };
         // A lag of exactly 1/σ is 0 at ω = 0 alone.

@@ -78,7 +78,7 @@ impl Terms {
             of.map(|c| c.value.abs() + c.error).sum()
         };
         let sizes: [f64; LENGTH] = std::array::from_fn(size);
-        super::feedback::polynomial(&sizes[..=degree])
+        crate::linear::feedback_loop::polynomial(&sizes[..=degree])
     }
 
     /// The function of ω whose zeros are searched for.

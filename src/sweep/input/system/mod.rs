@@ -42,7 +42,7 @@ use parameter::OwnParameter;
 use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
-use crate::model::ModelError;
+use crate::model::{Channel, ModelError};
 
 /// A system whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,17 +128,15 @@ pub struct Evaluation {
     pub own: Vec<f64>,
     /// τ ≥ 0.
     pub tau: f64,
-    /// R, −1 < R < 1; in feedback form only.
-    pub memory: f64,
-    /// δ ≥ 0; in feedback form only.
-    pub latency: f64,
+    /// R and δ; in feedback form only.
+    pub channel: Channel,
     values: Vec<f64>,
     stacks: Stacks,
 }
 
 impl PartialEq for Evaluation {
     fn eq(&self, other: &Self) -> bool {
-        let numbers = |e: &Self| [e.tau, e.memory, e.latency].map(f64::to_bits);
+        let numbers = |e: &Self| [e.tau, e.channel.memory, e.channel.latency].map(f64::to_bits);
         self.own == other.own && numbers(self) == numbers(other)
     }
 }
@@ -228,7 +226,7 @@ impl SystemModel {
                         what,
                     });
                 }
-                Ok(System::feedback(open, gain, at.memory, at.latency))
+                Ok(System::feedback(open, gain, at.channel))
             }
         }
     }

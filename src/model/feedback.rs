@@ -1,0 +1,163 @@
+//! The feedback of the elongation: gains, delay, memory, latency and lags.
+//!
+//! ```text
+//! S(t) = a(t) − a(t − τ) + R S(t − τ)
+//! v = v0 + α_v S(t − δ),   N = N0 + α_N S(t − δ)
+//! ```
+//!
+//! The letter's own has R = δ = 0. Memory is that of extended time-delay autosynchronization
+//! (Socolar, Sukow and Gauthier, Phys. Rev. E 50, 3245, 1994). A lag T divides what passes through
+//! it by 1 + Tλ.
+
+use super::oscillator::{Control, Oscillator};
+
+/// What happens to the signal between the sensor and the gains.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Channel {
+    /// R, the memory, −1 < R < 1.
+    pub memory: f64,
+    /// δ ≥ 0, the latency, in the unit of the delay.
+    pub latency: f64,
+}
+
+impl Channel {
+    /// Whether there is memory or latency.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.memory != 0.0 || self.latency != 0.0
+    }
+}
+
+/// Lags of first order, at least 0, in the unit of the delay.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Lags {
+    /// T_a, of the load behind its command.
+    pub load: f64,
+    /// T_v, of the pulling velocity behind its command.
+    pub velocity: f64,
+    /// T_s, of the sensor behind the elongation.
+    pub sensor: f64,
+}
+
+impl Lags {
+    /// T_a, T_v and T_s.
+    #[must_use]
+    pub fn times(&self) -> [f64; 3] {
+        [self.load, self.velocity, self.sensor]
+    }
+}
+
+/// Delayed feedback of the elongation, physical or dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Feedback {
+    /// α_v and α_N.
+    pub gains: Control,
+    /// τ ≥ 0, the delay; greater than 0 where a gain acts.
+    pub tau: f64,
+    /// Memory and latency; without effect where no gain acts.
+    pub channel: Channel,
+    /// Lags of actuators and sensor.
+    pub lags: Lags,
+}
+
+impl Feedback {
+    /// The letter's own feedback, with these gains and this delay.
+    #[must_use]
+    pub fn new(alpha_v: f64, alpha_n: f64, tau: f64) -> Self {
+        Self {
+            gains: Control { alpha_v, alpha_n },
+            tau,
+            ..Self::default()
+        }
+    }
+
+    /// The same feedback with this memory and latency.
+    #[must_use]
+    pub fn through(self, channel: Channel) -> Self {
+        Self { channel, ..self }
+    }
+
+    /// Whether memory or latency have an effect: the signal then depends on more of the past than
+    /// one delay.
+    #[must_use]
+    pub fn echoes(&self) -> bool {
+        self.gains.act() && self.channel.acts()
+    }
+
+    /// How long it remembers: τ/(1 − |R|) + δ, which is one delay without memory and latency, and
+    /// where no gain acts.
+    #[must_use]
+    pub fn remembered(&self) -> f64 {
+        if !self.echoes() {
+            return self.tau;
+        }
+        let Channel { memory, latency } = self.channel;
+        self.tau / (1.0 - memory.abs()) + latency
+    }
+
+    /// The same feedback in the units of `oscillator`: times in √(M/κ), α_v in its inverse, α_N in
+    /// κ.
+    #[must_use]
+    pub fn dimensionless(&self, oscillator: &Oscillator) -> Self {
+        let unit = oscillator.time_unit();
+        let Lags {
+            load,
+            velocity,
+            sensor,
+        } = self.lags;
+        Self {
+            gains: Control {
+                alpha_v: self.gains.alpha_v * unit,
+                alpha_n: self.gains.alpha_n / oscillator.stiffness(),
+            },
+            tau: self.tau / unit,
+            channel: Channel {
+                memory: self.channel.memory,
+                latency: self.channel.latency / unit,
+            },
+            lags: Lags {
+                load: load / unit,
+                velocity: velocity / unit,
+                sensor: sensor / unit,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_and_latency_lengthen_the_past_where_a_gain_acts() {
+        let channel = Channel {
+            memory: -0.5,
+            latency: 0.25,
+        };
+        assert_eq!(Feedback::new(-0.3, 0.0, 2.0).remembered(), 2.0);
+        let through = |alpha_v| Feedback::new(alpha_v, 0.0, 2.0).through(channel);
+        assert_eq!(through(-0.3).remembered(), 4.25);
+        assert_eq!(through(0.0).remembered(), 2.0);
+    }
+
+    #[test]
+    fn times_are_measured_by_the_oscillator() {
+        let oscillator = Oscillator::new(8.0, 2.0, 5.0).unwrap();
+        let physical = Feedback {
+            lags: Lags {
+                load: 2.0,
+                velocity: 4.0,
+                sensor: 6.0,
+            },
+            ..Feedback::new(0.5, -3.0, 8.0).through(Channel {
+                memory: 0.1,
+                latency: 10.0,
+            })
+        };
+        let found = physical.dimensionless(&oscillator);
+        assert_eq!((found.gains.alpha_v, found.gains.alpha_n), (1.0, -1.5));
+        assert_eq!((found.tau, found.channel.latency), (4.0, 5.0));
+        assert_eq!(found.lags.times(), [1.0, 2.0, 3.0]);
+        assert_eq!(found.channel.memory, 0.1);
+    }
+}
