@@ -17,11 +17,12 @@ use near_resonance::{Line, Oscillator, Weak};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::linear::general::{DelayLine, System};
+use slipmap::linear::line;
 use slipmap::linear::stable_delays::StableInterval;
-use slipmap::linear::{Count, Crossings, MarginalTolerance};
+use slipmap::linear::{Count, MarginalTolerance};
 use slipmap::model::stop::Stop;
 use slipmap::sweep::input::system::SystemModel;
-use slipmap::sweep::{LinearModel, Parameter, Setting};
+use slipmap::sweep::{Parameter, Setting};
 
 /// Delays farther from a change than this, relative, are not marginal.
 const NEAR: f64 = 1e-8;
@@ -78,25 +79,20 @@ fn setting(of: &Oscillator) -> Setting {
 /// The first three intervals of stable delays of a setting.
 fn stable_delays(of: &Oscillator) -> Vec<[f64; 2]> {
     let ends = |of: StableInterval| [of.from, of.to];
-    match setting(of).linear().unwrap().0 {
-        LinearModel::Letter(groups) => {
-            let crossings = Crossings::of(groups);
-            crossings.stable_delays().take(3).map(ends).collect()
-        }
-        LinearModel::General(system) => {
-            let line = DelayLine::of(&system);
-            line.stable_intervals().take(3).map(ends).collect()
-        }
-    }
+    let line = line_of(of);
+    line.stable_intervals().take(3).map(ends).collect()
+}
+
+/// The line of delays of a setting.
+fn line_of(of: &Oscillator) -> Box<dyn line::Line> {
+    let (model, _) = setting(of).linear().unwrap();
+    model.roots(&Stop::default()).line(1.0)
 }
 
 /// The count of a setting by its line of delays.
 fn count(of: &Oscillator, tau: f64) -> Count {
-    let tolerance = MarginalTolerance::default();
-    match setting(of).linear().unwrap().0 {
-        LinearModel::Letter(groups) => Crossings::of(groups).count(tau, tolerance),
-        LinearModel::General(system) => DelayLine::of(&system).count(tau, tolerance),
-    }
+    let count = line_of(of).count(tau, MarginalTolerance::default());
+    count.expect("a line that is counted")
 }
 
 fn gain(chance: &mut Chance) -> f64 {

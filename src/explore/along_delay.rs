@@ -3,12 +3,13 @@
 
 use std::f64::consts::TAU;
 
+use crate::linear::MarginalTolerance;
 use crate::linear::crossing::Crossing;
-use crate::linear::general::DelayLine;
+use crate::linear::line::Line;
 use crate::linear::stable_delays::StableInterval;
-use crate::linear::{Crossings, Direction};
 use crate::model::ModelError;
-use crate::sweep::{LinearModel, Parameter, Setting};
+use crate::model::stop::Stop;
+use crate::sweep::{Parameter, Setting};
 
 /// The line reaches at least to the end of this many stable intervals. Near a tangency there can be
 /// millions.
@@ -41,39 +42,26 @@ impl AlongDelay {
     /// When a parameter is outside the model's range.
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
         let (model, time_unit) = setting.linear()?;
-        let tau = setting.get(Parameter::Tau);
-        Ok(match model {
-            LinearModel::Letter(groups) => {
-                Self::of_letter(&Crossings::of(groups).in_physical_time(time_unit), tau)
-            }
-            LinearModel::General(system) => {
-                Self::of_line(&DelayLine::of(&system).in_physical_time(time_unit), tau)
-            }
-        })
+        let line = model.roots(&Stop::default()).line(time_unit);
+        Ok(Self::of_line(&*line, setting.get(Parameter::Tau)))
     }
 
-    fn of_letter(crossings: &Crossings, tau: f64) -> Self {
-        let first: Vec<StableInterval> = crossings.stable_delays().take(INTERVALS).collect();
-        let until = longest(crossings.iter(), &first, (tau, crossings.time_unit));
-        let count: u64 = moving(crossings.iter()).map(|c| c.count_below(until)).sum();
-        let changes = moving(crossings.iter()).flat_map(|c| crossing_delays(*c, until));
-        Self {
-            steps: steps((count, changes), until, |tau| crossings.n_unstable(tau)),
-            until,
-            ..Self::stable_before(until, crossings.stable_delays())
-        }
-    }
-
-    /// The line of a general system; without steps where roots are not counted.
-    fn of_line(line: &DelayLine, tau: f64) -> Self {
+    /// The line; without steps where roots are not counted.
+    fn of_line(line: &dyn Line, tau: f64) -> Self {
         let first: Vec<StableInterval> = line.stable_intervals().take(INTERVALS).collect();
-        let until = longest(line.crossings.iter(), &first, (tau, line.time_unit));
-        let changes = line.changes().map(|change| change.tau);
-        let changes = changes.take_while(|tau| *tau < until);
-        let count = changes.clone().take(MOST_STEPS as usize + 1).count() as u64;
-        let steps = match line.uncounted {
-            true => Vec::new(),
-            false => steps((count, changes), until, |tau| line.n_unstable(tau)),
+        let until = longest(line.crossings(), &first, (tau, line.time_unit()));
+        let changes = || {
+            line.changes()
+                .map(|change| change.tau)
+                .take_while(|tau| *tau < until)
+        };
+        let count = changes().take(MOST_STEPS as usize + 1).count() as u64;
+        let n_unstable = |tau: f64| line.count(tau, MarginalTolerance::default());
+        let steps = match line.n_at_zero_delay() {
+            None => Vec::new(),
+            Some(_) => steps((count, changes()), until, |tau| {
+                n_unstable(tau).map_or(0, |count| count.n_unstable)
+            }),
         };
         Self {
             steps,
@@ -112,11 +100,6 @@ fn longest<'c>(
     }
 }
 
-/// The crossings that are not touches.
-fn moving<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> impl Iterator<Item = &'c Crossing> {
-    crossings.filter(|c| c.direction != Direction::Touch)
-}
-
 /// The number of unstable roots from 0 to `until`; it changes `count` times, at the delays
 /// `changes`.
 fn steps(
@@ -138,12 +121,6 @@ fn steps(
         (from, to, n_unstable(from + 0.5 * (to - from)))
     };
     edges.windows(2).map(between).collect()
-}
-
-/// The delays of one crossing below `until`.
-fn crossing_delays(crossing: Crossing, until: f64) -> impl Iterator<Item = f64> {
-    let first = crossing.first_branch;
-    (0..crossing.count_below(until)).map(move |i| crossing.delay(first + i))
 }
 
 #[cfg(test)]

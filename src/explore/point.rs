@@ -7,7 +7,7 @@ use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::sweep::{LinearModel, Parameter, Setting};
+use crate::sweep::{Parameter, Setting};
 
 /// Linear stability at a point, in the units of its setting.
 #[derive(Debug, Clone, Serialize)]
@@ -47,11 +47,9 @@ impl Point {
         let (model, time_unit) = setting.linear()?;
         let tau = setting.get(Parameter::Tau);
         let stability = Stability::of(&model, (time_unit, tau), wanted, stop);
-        let margins = match &model {
-            LinearModel::General(_) if setting.has_state() => {
-                Margins::of_stability(&stability, tau)
-            }
-            _ => Margins::at(setting, 0.0, stop)?,
+        let margins = match setting.has_state() {
+            true => Margins::of_stability(&stability, tau),
+            false => Margins::at(setting, 0.0, stop)?,
         };
         Ok(Self {
             mu_prime: sliding.mu_prime,

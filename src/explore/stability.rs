@@ -4,19 +4,15 @@ use serde::Serialize;
 
 use super::finite;
 use super::margin_kind::{MarginKind, sign};
-use super::stable_line::{Latencies, MOST_INTERVALS, crossings_known, delays_known, ends};
-use crate::linear::certificate::roots_right_of;
+use super::stable_line::{Latencies, MOST_INTERVALS, ends};
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
-use crate::linear::general::{DelayLine, RootCounter, Spectrum as GeneralSpectrum, System};
+use crate::linear::general::{self as linear, RightOf};
+use crate::linear::line::{Linear, Roots};
 use crate::linear::newton::Root;
-use crate::linear::rightmost::Rightmost;
-use crate::linear::spectrum::Incomplete;
 use crate::linear::stable_delays::StableInterval;
-use crate::linear::{Crossings, Direction, MarginalTolerance};
-use crate::model::Groups;
+use crate::linear::{Direction, MarginalTolerance};
 use crate::model::stop::Stop;
-use crate::sweep::LinearModel;
 
 /// Stability of a linear model at a delay.
 #[derive(Debug, Clone, Serialize)]
@@ -138,17 +134,8 @@ impl Stability {
     /// The stability of a linear model with the unit of time `time_unit`, at the delay `tau`. Once
     /// `stop` is set, the answer comes soon but is meaningless.
     #[must_use]
-    pub fn of(
-        model: &LinearModel,
-        (time_unit, tau): (f64, f64),
-        wanted: Wanted,
-        stop: &Stop,
-    ) -> Self {
-        let at = (time_unit, tau);
-        let mut stability = match model {
-            LinearModel::Letter(groups) => Self::of_letter(*groups, time_unit, tau, wanted),
-            LinearModel::General(system) => Self::of_system(system, at, wanted, stop),
-        };
+    pub fn of(model: &Linear, (time_unit, tau): (f64, f64), wanted: Wanted, stop: &Stop) -> Self {
+        let mut stability = Self::with_roots(&*model.roots(stop), (time_unit, tau), wanted);
         if !stop.is_set() {
             stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
         }
@@ -179,61 +166,19 @@ impl Stability {
         if n == 0 { some_right } else { none_right }
     }
 
-    fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
-        let crossings = Crossings::of(groups).in_physical_time(time_unit);
-        let count = crossings.count(tau, MarginalTolerance::default());
-        let mut intervals = crossings.stable_delays();
-        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        let delay_margin = crossings.delay_margin(tau);
-        let first = first_crossing(crossings.iter());
-        let count_right = |line: f64| roots_right_of(groups, tau / time_unit, line * time_unit);
-        Self {
-            n_unstable: Some(count.n_unstable),
-            stable: count.stable(),
-            marginal: count.marginal,
-            reason: None,
-            stable_delays: Some(ends(&stable)),
-            stable_delays_truncated: intervals.next().is_some(),
-            delay_margin: finite(delay_margin),
-            delay_margin_kind: MarginKind::of(delay_margin),
-            delay_margin_sign: sign(delay_margin),
-            n_at_zero_delay: Some(crossings.at_zero_delay),
-            first_crossing: first.map(|(delay, _)| delay),
-            first_change: first.map(|(_, change)| change),
-            crossings: Some(crossings.iter().map(PointCrossing::of).collect()),
-            latencies: Latencies::default(),
-            essential_abscissa: None,
-            spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
-            line: wanted.line,
-            n_right_of_line: wanted.line.and_then(count_right),
-        }
-    }
-
-    fn of_system(
-        system: &System,
-        (time_unit, tau): (f64, f64),
-        wanted: Wanted,
-        stop: &Stop,
-    ) -> Self {
-        let line = DelayLine::of(system);
-        let counter = RootCounter::new(system).bounded().heeding(stop);
+    fn with_roots(roots: &dyn Roots, (time_unit, tau): (f64, f64), wanted: Wanted) -> Self {
         let at = tau / time_unit;
-        let found = GeneralSpectrum::at(&counter, &line, at, wanted.roots.into());
-        let line = line.in_physical_time(time_unit);
+        let found = roots.spectrum(at, wanted.roots.into());
+        let line = &*roots.line(time_unit);
+        let count = line.count(tau, MarginalTolerance::default());
         let mut intervals = line.stable_intervals();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
         let truncated = intervals.next().is_some() || intervals.gave_up();
-        let delays_known = delays_known(&line) && !(stable.is_empty() && truncated);
-        let delay_margin = match line.reason {
-            // At every delay there are infinitely many unstable roots.
-            Some(Reason::Infinite) if tau > 0.0 => f64::NEG_INFINITY,
-            _ => line.margins().margin_at(tau),
-        };
+        let delays_known = line.delays_known() && !(stable.is_empty() && truncated);
+        let delay_margin = line.delay_margin(tau);
         let first = line.changes().next();
-        let count = found.count;
         let stable_here = count.is_some_and(|count| count.stable());
-        let essential = found.essential_abscissa / time_unit;
-        let count_right = |line: f64| counter.right_of(at, line * time_unit).finite();
+        let count_right = |line: f64| roots.right_of(at, line * time_unit).finite();
         Self {
             n_unstable: count.map(|count| count.n_unstable),
             // At ρ = 1 roots accumulate at the imaginary axis: never exponentially stable.
@@ -246,26 +191,19 @@ impl Stability {
             delay_margin: finite(delay_margin),
             delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
-            n_at_zero_delay: (!line.uncounted).then_some(line.at_zero_delay),
+            n_at_zero_delay: line.n_at_zero_delay(),
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
-            crossings: crossings_known(&line)
-                .then(|| line.crossings.iter().map(PointCrossing::of).collect()),
+            crossings: line
+                .crossings_known()
+                .then(|| line.crossings().map(PointCrossing::of).collect()),
             latencies: Latencies::default(),
-            essential_abscissa: finite(essential),
+            essential_abscissa: finite(found.essential_abscissa / time_unit),
             line: wanted.line,
             n_right_of_line: wanted.line.and_then(count_right),
-            spectrum: Spectrum::of_system(&counter, &found, (at, time_unit), wanted.roots),
+            spectrum: Spectrum::of(roots, &found, (at, time_unit), wanted.roots),
         }
     }
-}
-
-/// The shortest delay at which a pair crosses, and the change of the count there.
-fn first_crossing<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> Option<(f64, i8)> {
-    crossings
-        .filter(|c| c.direction != Direction::Touch)
-        .map(|c| (c.delay(c.first_branch), 2 * c.direction.sign()))
-        .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 impl PointCrossing {
@@ -282,98 +220,49 @@ impl PointCrossing {
     }
 }
 
-/// Rightmost roots, dimensionless.
-struct Listed<'r> {
-    roots: &'r [Root],
-    margin: f64,
-    certified: bool,
-    missing: Option<&'r Incomplete>,
-}
-
 impl Spectrum {
-    fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: u8) -> Self {
-        let tau = tau / time_unit;
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        let found = Rightmost::at(groups, tau, wanted.into(), count);
-        let listed = Listed {
-            roots: &found.roots,
-            margin: found.margin,
-            certified: found.certified,
-            missing: found.missing.as_ref(),
-        };
-        let no_more = no_more(tau == 0.0, groups.uncontrolled());
-        let right_of = |line| roots_right_of(groups, tau, line);
-        Self::of(&listed, time_unit, wanted, no_more, right_of)
-    }
-
-    fn of_system(
-        counter: &RootCounter,
-        found: &GeneralSpectrum,
+    /// What was found at the dimensionless delay `tau`, in physical units.
+    fn of(
+        roots: &dyn Roots,
+        found: &linear::Spectrum,
         (tau, time_unit): (f64, f64),
         wanted: u8,
-    ) -> Self {
-        let listed = Listed {
-            roots: &found.roots,
-            margin: found.margin,
-            certified: found.certified,
-            missing: found.missing.as_ref(),
-        };
-        let no_more = match found.reason {
-            Some(Reason::NoRightmostRoot) => {
-                "there is no rightmost one: roots accumulate at the abscissa from the left"
-            }
-            Some(Reason::Infinite) => "infinitely many roots lie right of the imaginary axis",
-            Some(Reason::DegreeUnknown) => "the highest coefficient is within rounding of 0",
-            Some(Reason::Refused) => "systems of this kind are not answered",
-            _ => no_more(tau == 0.0, counter.system().uncontrolled()),
-        };
-        let right_of = |line| counter.right_of(tau, line).finite();
-        let spectrum = Self::of(&listed, time_unit, wanted, no_more, right_of);
-        Self {
-            abscissa: finite(found.abscissa / time_unit),
-            ..spectrum
-        }
-    }
-
-    /// The roots in physical units, with the unit of time `time_unit`. `no_more` says why there may
-    /// be fewer roots than `wanted` although none is missing.
-    fn of(
-        found: &Listed,
-        time_unit: f64,
-        wanted: u8,
-        no_more: &str,
-        right_of: impl Fn(f64) -> Option<u64>,
     ) -> Self {
         let line = found.roots.first().map(|root| {
             let re = root.lambda.re;
             re + found.margin * re.abs().max(1.0)
         });
-        let certified_line = line.filter(|line| right_of(*line) == Some(0));
-        let roots: Vec<[f64; 2]> = found
-            .roots
-            .iter()
-            .map(|root| [root.lambda.re / time_unit, root.lambda.im / time_unit])
-            .collect();
-        let missing = found.missing;
-        let fewer = missing.map_or_else(|| no_more.to_owned(), ToString::to_string);
+        let nothing_right = |line: &f64| roots.right_of(tau, *line) == RightOf::Roots(0);
+        let physical = |root: &Root| [root.lambda.re / time_unit, root.lambda.im / time_unit];
+        let listed: Vec<[f64; 2]> = found.roots.iter().map(physical).collect();
+        let why = || match found.missing.as_ref() {
+            Some(missing) => missing.to_string(),
+            None => no_more(found.reason, tau == 0.0, roots.uncontrolled()).to_owned(),
+        };
         Self {
-            abscissa: roots.first().map(|root| root[0]),
-            frequency: roots.first().map(|root| root[1]),
-            fewer: (roots.len() < wanted.into()).then_some(fewer),
-            roots,
+            abscissa: finite(found.abscissa / time_unit),
+            frequency: listed.first().map(|root| root[1]),
+            fewer: (listed.len() < wanted.into()).then(why),
+            roots: listed,
             certified: found.certified,
             certificate_margin: finite(found.margin),
-            certified_line: certified_line.map(|line| line / time_unit),
-            incomplete: missing.is_some(),
+            certified_line: line.filter(nothing_right).map(|line| line / time_unit),
+            incomplete: found.missing.is_some(),
         }
     }
 }
 
 /// Why there are fewer roots than requested although none is missing.
-fn no_more(without_delay: bool, uncontrolled: bool) -> &'static str {
-    match (without_delay, uncontrolled) {
-        (true, _) => "there are no others: the delay is 0",
-        (_, true) => "there are no others without control",
+fn no_more(reason: Option<Reason>, without_delay: bool, uncontrolled: bool) -> &'static str {
+    match (reason, without_delay, uncontrolled) {
+        (Some(Reason::NoRightmostRoot), ..) => {
+            "there is no rightmost one: roots accumulate at the abscissa from the left"
+        }
+        (Some(Reason::Infinite), ..) => "infinitely many roots lie right of the imaginary axis",
+        (Some(Reason::DegreeUnknown), ..) => "the highest coefficient is within rounding of 0",
+        (Some(Reason::Refused), ..) => "systems of this kind are not answered",
+        (_, true, _) => "there are no others: the delay is 0",
+        (_, _, true) => "there are no others without control",
         _ => "no others can be told from -infinity",
     }
 }

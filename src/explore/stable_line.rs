@@ -1,9 +1,8 @@
-//! The stable delays or latencies of a line, as answers tell them, and whether they are known.
+//! The stable delays or latencies of a line, as answers tell them.
 
 use serde::Serialize;
 
 use super::finite;
-use crate::linear::general::reason::Reason;
 use crate::linear::general::{DelayLine, System};
 use crate::linear::stable_delays::StableInterval;
 
@@ -46,18 +45,6 @@ impl Latencies {
             margin: Some(margin * time_unit),
         }
     }
-}
-
-/// Whether the stable delays of a line are known. Where infinitely many roots are unstable there
-/// are none.
-pub(super) fn delays_known(line: &DelayLine) -> bool {
-    line.reason == Some(Reason::Infinite) || crossings_known(line)
-}
-
-/// Whether the crossings of a line are known. What is always marginal for no reason is a line with
-/// too many crossings to list, or without a count to begin with.
-pub(super) fn crossings_known(line: &DelayLine) -> bool {
-    !line.uncounted && (!line.always_marginal || line.reason.is_some())
 }
 
 /// The ends of stable intervals; the end of the last one is none where it has none.

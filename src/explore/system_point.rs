@@ -8,8 +8,8 @@ use super::finite;
 use super::margin_kind::MarginKind;
 use super::stability::{Stability, Wanted};
 use crate::linear::general::Class;
+use crate::linear::line::Linear;
 use crate::model::stop::Stop;
-use crate::sweep::LinearModel;
 use crate::sweep::input::system::{Evaluation, SystemModel, Undefined};
 
 /// Linear stability of a system at a point.
@@ -71,7 +71,7 @@ impl SystemPoint {
         let own = model.parameters.iter().map(|own| own.name.clone());
         let line_of_delays = !model.depends_on_delay();
         let feedback = model.is_feedback();
-        let system = LinearModel::General(Box::new(system));
+        let system = Linear::General(Box::new(system));
         let mut stability = Stability::of(&system, (1.0, at.tau), wanted, &Stop::default());
         if !line_of_delays {
             forget_other_delays(&mut stability);

@@ -27,6 +27,7 @@
 //! - `equation`: a characteristic equation, with all that is needed to find and follow its roots
 //! - [`feedback_loop`]: the feedback loop about steady sliding, as a system
 //! - `general`: any linear system with one delay
+//! - `line`: linear models, and what is told of each whatever its kind
 //! - `newton`: polishing of a root (Halley's method) and its error
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
 //! - `roots`: bisection
@@ -52,6 +53,7 @@ pub mod equation;
 pub mod feedback_loop;
 pub mod gains;
 pub mod general;
+pub mod line;
 pub mod lobes;
 pub mod margins;
 pub mod newton;

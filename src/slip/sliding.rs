@@ -1,10 +1,9 @@
 //! Linear stability of sliding under the feedback of a motion.
 
-use crate::linear::feedback_loop::FeedbackLoop;
-use crate::linear::general::{DelayLine, RootCounter, Spectrum, System};
-use crate::linear::rightmost::Rightmost;
-use crate::linear::{Count, Crossings, MarginalTolerance};
-use crate::model::{Channel, Groups, Lags};
+use crate::linear::line::{Linear, Roots};
+use crate::linear::{Count, MarginalTolerance};
+use crate::model::stop::Stop;
+use crate::model::{Channel, Groups};
 
 /// Sliding at one velocity, dimensionless as a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,49 +20,29 @@ impl Sliding {
     /// The number of unstable roots. Where it is not known the count is marginal.
     #[must_use]
     pub fn count(&self, tolerance: MarginalTolerance) -> Count {
-        match self.general() {
-            None => Crossings::of(self.groups).count(self.tau, tolerance),
-            Some(system) => count_on(&DelayLine::of(&system), self.tau, tolerance),
-        }
+        let count = self.roots().line(1.0).count(self.tau, tolerance);
+        count.unwrap_or(Count {
+            n_unstable: 0,
+            marginal: true,
+        })
     }
 
     /// The spectral abscissa, in units of √(κ/M), if it is known and all roots are stable.
     #[must_use]
     pub fn stable_abscissa(&self) -> Option<f64> {
-        let Some(system) = self.general() else {
-            let count = self.count(MarginalTolerance::default());
-            if !count.stable() {
-                return None;
-            }
-            let rightmost = Rightmost::at(self.groups, self.tau, 1, count);
-            let root = rightmost.roots.first().filter(|_| rightmost.certified);
-            return root.map(|root| root.lambda.re);
-        };
-        let line = DelayLine::of(&system);
-        if !count_on(&line, self.tau, MarginalTolerance::default()).stable() {
+        let roots = self.roots();
+        let count = roots
+            .line(1.0)
+            .count(self.tau, MarginalTolerance::default());
+        if !count.is_some_and(|count| count.stable()) {
             return None;
         }
-        let spectrum = Spectrum::at(&RootCounter::new(&system).bounded(), &line, self.tau, 1);
-        Some(spectrum.abscissa).filter(|abscissa| spectrum.certified && *abscissa < 0.0)
+        let found = roots.spectrum(self.tau, 1);
+        Some(found.abscissa).filter(|abscissa| found.certified && *abscissa < 0.0)
     }
 
-    /// The general system B(1 − RE) − A e^(−λδ)(1 − E); None where the feedback is the letter's
-    /// own.
-    fn general(&self) -> Option<System> {
-        if !self.channel.acts() || self.groups.uncontrolled() {
-            return None;
-        }
-        Some(FeedbackLoop::of_letter(self.groups, self.channel, Lags::default()).system())
-    }
-}
-
-fn count_on(line: &DelayLine, tau: f64, tolerance: MarginalTolerance) -> Count {
-    match line.uncounted {
-        true => Count {
-            n_unstable: 0,
-            marginal: true,
-        },
-        false => line.count(tau, tolerance),
+    fn roots(&self) -> Box<dyn Roots> {
+        Linear::of_feedback(self.groups, self.channel).roots(&Stop::default())
     }
 }
 

@@ -33,7 +33,6 @@ pub use events::{Event, Observer};
 pub use input::axis::Axis;
 pub use input::case_file::CaseSpec;
 pub use input::field::Field;
-pub use input::linear_model::LinearModel;
 pub use input::parameter::Parameter;
 pub use input::setting::Setting;
 pub use input::spec::SweepSpec;

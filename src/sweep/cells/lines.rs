@@ -1,7 +1,7 @@
 //! The linear models of lines of cells, one line after the other.
 
+use crate::linear::line::Linear;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
-use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::setting::Setting;
@@ -57,20 +57,20 @@ impl<'p> Lines<'p> {
 
     /// The linear model of the line, and its unit of time.
     #[inline(always)]
-    pub(super) fn model(&mut self) -> Result<(LinearModel, f64), ModelError> {
+    pub(super) fn model(&mut self) -> Result<(Linear, f64), ModelError> {
         if self.beyond_letter {
             if let Some(system) = self.setting.own_system(&mut self.evaluation) {
-                return Ok((LinearModel::General(Box::new(system?)), 1.0));
+                return Ok((Linear::General(Box::new(system?)), 1.0));
             }
             let model = self.setting.linear()?;
-            if matches!(model.0, LinearModel::General(_)) {
+            if matches!(model.0, Linear::General(_)) {
                 // The rates of its parameters are needed nevertheless.
                 self.groups()?;
                 return Ok(model);
             }
         }
         let (groups, time_unit) = self.groups()?;
-        Ok((LinearModel::Letter(groups), time_unit))
+        Ok((Linear::Letter(groups), time_unit))
     }
 
     /// The groups of the line, and its unit of time.

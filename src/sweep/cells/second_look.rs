@@ -4,15 +4,14 @@ use super::basin::{Asked, STUDENT_95, Tally};
 use super::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
-use crate::linear::certificate::roots_right_of;
-use crate::linear::general::{self, Class, RootCounter};
+use crate::linear::general;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::ModelError;
+use crate::model::stop::Stop;
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
 use crate::sweep::input::field::{Field, number_of_transition};
-use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
@@ -96,12 +95,16 @@ pub fn second_look(
     if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::Abscissa)) {
         let (model, unit) = setting.linear()?;
         let tau = plan.delay(index) / unit;
-        let right_of = right_of(&model, tau);
+        let roots = model.roots(&Stop::default());
+        let right_of = |line: f64| match roots.right_of(tau, line) {
+            general::RightOf::Infinite => Some(u64::MAX),
+            other => other.finite(),
+        };
         if holds(Field::NUnstable) {
-            answers.push((Question::Count, count(&*right_of, stored)));
+            answers.push((Question::Count, count(&right_of, stored)));
         }
         if holds(Field::Abscissa) {
-            answers.push((Question::Abscissa, abscissa(&*right_of, unit, stored)));
+            answers.push((Question::Abscissa, abscissa(&right_of, unit, stored)));
         }
     }
     if plan.spec.follows_motions() && holds(Field::Outcome) {
@@ -140,30 +143,9 @@ fn told(same: bool) -> Answer {
 
 /// The number of roots to the right of a line, by the argument principle: the largest u64 for
 /// infinitely many, none where it is unknown.
-type RightOf = dyn Fn(f64) -> Option<u64>;
+type RightOf<'a> = dyn Fn(f64) -> Option<u64> + 'a;
 
-fn right_of(model: &LinearModel, tau: f64) -> Box<RightOf> {
-    match model {
-        LinearModel::Letter(groups) => {
-            let groups = *groups;
-            Box::new(move |line| roots_right_of(groups, tau, line))
-        }
-        LinearModel::General(system)
-            if matches!(system.class(), Class::DegreeUnknown | Class::Refused) =>
-        {
-            Box::new(|_| None)
-        }
-        LinearModel::General(system) => {
-            let counter = RootCounter::new(system);
-            Box::new(move |line| match counter.right_of(tau, line) {
-                general::RightOf::Infinite => Some(u64::MAX),
-                other => other.finite(),
-            })
-        }
-    }
-}
-
-fn count(right_of: &RightOf, stored: &Stored) -> Answer {
+fn count(right_of: &RightOf<'_>, stored: &Stored) -> Answer {
     let counted = (stored.value)(Field::NUnstable);
     let refused = stored.status & NOT_CONVERGED != 0 && counted.is_nan();
     if refused || stored.status & (MARGINAL | SATURATED) != 0 {
@@ -177,7 +159,7 @@ fn count(right_of: &RightOf, stored: &Stored) -> Answer {
     }
 }
 
-fn abscissa(right_of: &RightOf, unit: f64, stored: &Stored) -> Answer {
+fn abscissa(right_of: &RightOf<'_>, unit: f64, stored: &Stored) -> Answer {
     let abscissa = (stored.value)(Field::Abscissa) * unit;
     let infinite = stored.status & SATURATED != 0 && abscissa.is_nan();
     let open = stored.status & (NOT_CONVERGED | DISAGREE) != 0 || infinite;

@@ -16,12 +16,12 @@ use super::slip_columns::SlipColumns;
 use super::vc_columns::VcColumns;
 use crate::linear::Crossings;
 use crate::linear::general::{Reason, System};
+use crate::linear::line::Linear;
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::sweep::input::field::Field;
-use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::{OfLinear, Source};
 use crate::sweep::plan::Plan;
@@ -163,11 +163,11 @@ impl<'p> Worker<'p> {
                     self.fill_without_sliding(at);
                     None
                 }
-                Ok((LinearModel::Letter(groups), time_unit)) => {
+                Ok((Linear::Letter(groups), time_unit)) => {
                     self.fill_line(groups, time_unit, at);
                     Some(true)
                 }
-                Ok((LinearModel::General(system), time_unit)) => {
+                Ok((Linear::General(system), time_unit)) => {
                     self.fill_general(&system, time_unit, at, stop);
                     Some(false)
                 }
@@ -231,7 +231,7 @@ impl<'p> Worker<'p> {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
             one.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
-            let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
+            let Ok((Linear::General(system), time_unit)) = self.lines.model() else {
                 self.refuse(place, 1);
                 continue;
             };

@@ -1,33 +1,11 @@
-//! The linear model of a setting: the letter's groups, or a general system.
+//! The feedback and the linear model of a setting.
 
 use super::parameter::Parameter;
 use super::setting::Setting;
 use super::system::Evaluation;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
-use crate::linear::general::System;
+use crate::linear::line::Linear;
 use crate::model::{Channel, Feedback, Groups, Lags, ModelError};
-
-/// The linear model of a setting, dimensionless.
-#[derive(Debug, Clone)]
-pub enum LinearModel {
-    /// The letter's own: without memory, latency and lags.
-    Letter(Groups),
-    /// Any other.
-    General(Box<System>),
-}
-
-impl LinearModel {
-    /// The system; the letter's own in feedback form.
-    #[must_use]
-    pub fn system(&self) -> System {
-        match self {
-            Self::Letter(groups) => {
-                FeedbackLoop::of_letter(*groups, Channel::default(), Lags::default()).system()
-            }
-            Self::General(system) => **system,
-        }
-    }
-}
 
 impl Setting {
     /// The feedback, in physical units.
@@ -68,18 +46,18 @@ impl Setting {
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn linear(&self) -> Result<(LinearModel, f64), ModelError> {
+    pub fn linear(&self) -> Result<(Linear, f64), ModelError> {
         if let Some(system) = self.own_system(&mut Evaluation::default()) {
-            return Ok((LinearModel::General(Box::new(system?)), 1.0));
+            return Ok((Linear::General(Box::new(system?)), 1.0));
         }
         if !self.has_state() && self.beyond_letter(&Parameter::BEYOND_LETTER).is_none() {
             let oscillator = self.oscillator()?;
             let groups = oscillator.groups(self.sliding_point()?, self.control());
-            return Ok((LinearModel::Letter(groups), oscillator.time_unit()));
+            return Ok((Linear::Letter(groups), oscillator.time_unit()));
         }
         let system = self.feedback_loop()?.system();
         let time_unit = self.oscillator()?.time_unit();
-        Ok((LinearModel::General(Box::new(system)), time_unit))
+        Ok((Linear::General(Box::new(system)), time_unit))
     }
 }
 
@@ -111,7 +89,7 @@ mod tests {
             (Parameter::NormalLoad, 1.5),
         ];
         let setting = setting(&given);
-        let (LinearModel::Letter(groups), unit) = setting.linear().unwrap() else {
+        let (Linear::Letter(groups), unit) = setting.linear().unwrap() else {
             panic!("the letter's own")
         };
         let of_loop = setting.feedback_loop().unwrap();
@@ -174,9 +152,9 @@ mod tests {
     fn without_gains_there_is_nothing_to_remember() {
         let idle = [(Parameter::MuPrime, -0.3), (Parameter::Memory, 0.5)];
         let (model, _) = setting(&idle).linear().unwrap();
-        assert!(matches!(model, LinearModel::Letter(_)));
+        assert!(matches!(model, Linear::Letter(_)));
         let lagging = [(Parameter::MuPrime, -0.3), (Parameter::SensorLag, 0.5)];
         let (model, _) = setting(&lagging).linear().unwrap();
-        assert!(matches!(model, LinearModel::General(system) if system.uncontrolled()));
+        assert!(matches!(model, Linear::General(system) if system.uncontrolled()));
     }
 }

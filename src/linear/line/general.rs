@@ -1,0 +1,95 @@
+//! Any linear system with one delay, and with latency, within a bound of work.
+
+use super::{Intervals, Line, Roots};
+use crate::linear::count::{Count, MarginalTolerance};
+use crate::linear::crossing::Crossing;
+use crate::linear::general::stable::{Change, StableIntervals};
+use crate::linear::general::{Class, DelayLine, Reason, RightOf, RootCounter, Spectrum, System};
+use crate::model::stop::Stop;
+
+/// The roots of a general system.
+pub(super) struct GeneralRoots {
+    counter: RootCounter,
+    line: DelayLine,
+}
+
+impl GeneralRoots {
+    pub(super) fn new(system: &System, stop: &Stop) -> Self {
+        Self {
+            counter: RootCounter::new(system).bounded().heeding(stop),
+            line: DelayLine::of(system),
+        }
+    }
+}
+
+impl Roots for GeneralRoots {
+    fn line(&self, time_unit: f64) -> Box<dyn Line> {
+        Box::new(self.line.clone().in_physical_time(time_unit))
+    }
+
+    fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum {
+        Spectrum::at(&self.counter, &self.line, tau, wanted)
+    }
+
+    fn right_of(&self, tau: f64, line: f64) -> RightOf {
+        match self.counter.system().class() {
+            Class::DegreeUnknown | Class::Refused => RightOf::Undecided,
+            _ => self.counter.right_of(tau, line),
+        }
+    }
+
+    fn uncontrolled(&self) -> bool {
+        self.counter.system().uncontrolled()
+    }
+}
+
+impl Line for DelayLine {
+    fn time_unit(&self) -> f64 {
+        self.time_unit
+    }
+
+    /// Without a delay, D is a polynomial and has finitely many roots.
+    fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Option<Count> {
+        (!self.uncounted || tau == 0.0).then(|| DelayLine::count(self, tau, tolerance))
+    }
+
+    fn reason(&self) -> Option<Reason> {
+        self.reason
+    }
+
+    fn n_at_zero_delay(&self) -> Option<u64> {
+        (!self.uncounted).then_some(self.at_zero_delay)
+    }
+
+    fn crossings(&self) -> Box<dyn Iterator<Item = &Crossing> + '_> {
+        Box::new(self.crossings.iter())
+    }
+
+    /// What is always marginal for no reason is a line with too many crossings to list, or without
+    /// a count to begin with.
+    fn crossings_known(&self) -> bool {
+        !self.uncounted && (!self.always_marginal || self.reason.is_some())
+    }
+
+    fn changes(&self) -> Box<dyn Iterator<Item = Change> + '_> {
+        Box::new(DelayLine::changes(self))
+    }
+
+    fn stable_intervals(&self) -> Box<dyn Intervals + '_> {
+        Box::new(DelayLine::stable_intervals(self))
+    }
+
+    /// Where infinitely many roots are unstable at every delay, that never changes.
+    fn delay_margin(&self, tau: f64) -> f64 {
+        match self.reason {
+            Some(Reason::Infinite) if tau > 0.0 => f64::NEG_INFINITY,
+            _ => DelayLine::delay_margin(self, tau),
+        }
+    }
+}
+
+impl Intervals for StableIntervals<'_> {
+    fn gave_up(&self) -> bool {
+        StableIntervals::gave_up(self)
+    }
+}

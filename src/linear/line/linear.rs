@@ -1,0 +1,51 @@
+//! The kinds of linear models, told apart here and nowhere else above the kernels of cells.
+
+use super::Roots;
+use super::general::GeneralRoots;
+use super::letter::LetterRoots;
+use crate::linear::feedback_loop::FeedbackLoop;
+use crate::linear::general::System;
+use crate::model::stop::Stop;
+use crate::model::{Channel, Groups, Lags};
+
+/// A linear model, dimensionless.
+#[derive(Debug, Clone)]
+pub enum Linear {
+    /// The letter's own: without memory, latency and lags.
+    Letter(Groups),
+    /// Any other.
+    General(Box<System>),
+}
+
+impl Linear {
+    /// The letter's own model, or one with memory and latency where a gain makes them act.
+    #[must_use]
+    pub fn of_feedback(groups: Groups, channel: Channel) -> Self {
+        if !channel.acts() || groups.uncontrolled() {
+            return Self::Letter(groups);
+        }
+        let of_loop = FeedbackLoop::of_letter(groups, channel, Lags::default());
+        Self::General(Box::new(of_loop.system()))
+    }
+
+    /// The system; the letter's own in feedback form.
+    #[must_use]
+    pub fn system(&self) -> System {
+        match self {
+            Self::Letter(groups) => {
+                FeedbackLoop::of_letter(*groups, Channel::default(), Lags::default()).system()
+            }
+            Self::General(system) => **system,
+        }
+    }
+
+    /// Its roots, found within a bound of work. Once `stop` is set, answers come soon but are
+    /// meaningless.
+    #[must_use]
+    pub fn roots(&self, stop: &Stop) -> Box<dyn Roots> {
+        match self {
+            Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
+            Self::General(system) => Box::new(GeneralRoots::new(system, stop)),
+        }
+    }
+}
