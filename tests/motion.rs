@@ -12,7 +12,7 @@ use chance::Chance;
 use signal::{exponent, samples, slope};
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::friction::Kind;
+use slipmap::model::law::Kind;
 use slipmap::model::{Feedback, FrictionLaw, Groups, Table};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
 use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary};

@@ -3,7 +3,7 @@
 use super::options::{Options, RampOptions};
 use super::transition::Transition;
 use crate::linear::{Count, MarginalTolerance};
-use crate::model::friction::Kind;
+use crate::model::law::Kind;
 use crate::model::stop::Stop;
 use crate::model::{Feedback, FrictionLaw, Groups};
 use crate::slip::motion::{Accuracy, Motion, Parameters};
@@ -157,7 +157,7 @@ impl Problem {
     pub(super) fn persists_without_control(&self) -> bool {
         let mu_s = self.law.mu_s();
         !self.feedback.gains.act()
-            && matches!(self.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
+            && matches!(self.law.kind(), Kind::Coulomb(law) if law.mu0 < mu_s)
     }
 }
 

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::finite;
-use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, ModelError};
 use crate::sweep::Parameter;
 use crate::sweep::input::law_kind::LawKind;
@@ -104,10 +103,10 @@ impl LawCurve {
 /// The largest speed of a curve: beyond the law's own scale, and beyond v0.
 fn last_speed(law: &FrictionLaw, v0: Option<f64>) -> f64 {
     let scale = law.speed_scale(0.0);
-    let own = match law.kind() {
-        Kind::Table(table) => table.speeds().last().map_or(0.0, |last| 1.1 * last),
-        _ if scale.is_finite() => SCALES * scale,
-        _ => 0.0,
+    let own = match law.last_speed() {
+        Some(last) => 1.1 * last,
+        None if scale.is_finite() => SCALES * scale,
+        None => 0.0,
     };
     match own.max(2.0 * v0.unwrap_or(0.0)) {
         0.0 => 1.0,

@@ -16,32 +16,32 @@
 //!   imports libm
 //! - `error`: errors of parameters out of range, and the format of numbers in messages
 //! - `feedback`: the feedback of the elongation: gains, delay, memory, latency, lags
-//! - `friction`: Coulomb, velocity weakening, Stribeck, a table: value and slope
-//! - `friction_ranges`: bounds of a law's slope and curvature over a range of speeds
 //! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone
 //! - `known_cases`: cases with known answers, for tests and benches alike
+//! - `law`: laws of kinetic friction, one file each: value, slope, their bounds, series
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
 //! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical
 //!   stiffness
+//! - `series`: polynomials in time, their first zeros
 //! - `stop`: a flag that ends computations nobody waits for any more
 //! - `table`: a monotone cubic curve through measured points
 
 pub mod elementary;
 mod error;
 mod feedback;
-pub mod friction;
-mod friction_ranges;
 mod groups;
 pub mod known_cases;
+pub mod law;
 mod oscillator;
 pub mod rate_and_state;
+pub mod series;
 pub mod stop;
 pub mod table;
 
 pub use error::{ModelError, Shown};
 pub use feedback::{Channel, Feedback, Lags};
-pub use friction::FrictionLaw;
 pub use groups::Groups;
+pub use law::FrictionLaw;
 pub use oscillator::{Control, Oscillator, SlidingPoint};
 pub use rate_and_state::{RateAndState, StateGroups};
 pub use table::Table;

@@ -19,7 +19,7 @@ use crate::model::elementary::{cos, power};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-use super::series::{Coefficients, MOST_ORDER, PER_NEXT, value};
+use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, value};
 
 /// The number of nodes, which is the order of the polynomials of u and a.
 pub(super) const NODES: usize = 12;

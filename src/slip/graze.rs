@@ -1,7 +1,7 @@
 //! How near ẋ comes to zero in slip: its minima inside a step, and the minimum that a stop cut off.
 
-use super::series::{derivative, first_zero, shifted, value};
 use super::step::Step;
+use crate::model::series::{derivative, first_zero, shifted, value};
 
 /// Steps of Newton's method on the way to a minimum.
 const NEWTON_STEPS: usize = 8;

@@ -6,8 +6,8 @@ mod extrapolated;
 
 use std::collections::VecDeque;
 
-use super::series::{Coefficients, MOST_ORDER, shift, value};
 use crate::model::elementary::rough_root;
+use crate::model::series::{Coefficients, MOST_ORDER, shift, value};
 
 /// One step's elongation.
 #[derive(Debug, Clone)]

@@ -36,14 +36,14 @@ mod stick;
 mod taylor;
 
 use super::collocation::NODES;
-use super::friction_series::FrictionSeries;
+use crate::model::law::FrictionSeries;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
 
 use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
-use super::series::{MOST_ORDER, value};
 use super::step::{Control, Step};
 use crate::model::elementary::ln;
+use crate::model::series::{MOST_ORDER, value};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Feedback};
 

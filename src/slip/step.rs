@@ -1,8 +1,8 @@
 //! One step of a motion: polynomials in the time since its start, how they follow from the
 //! equations, and what can be read off them.
 
-use super::friction_series::Series;
-use super::series::{
+use crate::model::law::Series;
+use crate::model::series::{
     Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, spread, value,
 };
 

@@ -9,7 +9,7 @@ use super::nearest::{Family, MOST_BOXES, Nearest, nearest};
 use super::setting::{AsCase, Case, Setting};
 use crate::linear::Crossings;
 use crate::model::elementary::exp;
-use crate::model::friction::Kind;
+use crate::model::law::Kind;
 use crate::model::{Channel, Groups};
 
 /// Decay rates above this are not told from infinity.
@@ -57,7 +57,7 @@ pub fn delay(of: &impl AsCase) -> Limits {
 /// above where it is not, up to 1024 times `v0`.
 #[must_use]
 pub fn velocity(of: &impl AsCase, law: &SlidingLaw<'_>, v0: f64) -> Limits {
-    if matches!(law.law.kind(), Kind::Coulomb { .. }) {
+    if matches!(law.law.kind(), Kind::Coulomb(_)) {
         // No velocity changes D.
         return Limits {
             lower: 0.0,

@@ -1,7 +1,7 @@
 //! A past extrapolated from two others.
 
 use super::{History, Piece, SMOOTH, Stretch};
-use crate::slip::series::{MOST_ORDER, shifted};
+use crate::model::series::{MOST_ORDER, shifted};
 
 /// How well two pasts are aligned, relative to their whole span.
 const SLIVER: f64 = 1e-7;

@@ -2,8 +2,8 @@
 
 use super::feedback::{DelayLimit, PastLimits};
 use super::{Event, Integrator, LEAST_ORDER, Mode, Motion};
+use crate::model::series::value;
 use crate::slip::history::{History, SMOOTH};
-use crate::slip::series::value;
 
 /// Steps longer than the delay take this part of the range of a polynomial, since the next step
 /// needs the polynomial beyond its end.

@@ -1,17 +1,13 @@
 //! Steps of a motion by collocation: how long they are, and what the rates are there.
 
 use super::{Control, Mode, Motion};
-use crate::model::friction::Kind;
+use crate::model::law::FrictionSeries;
 use crate::slip::collocation::solve;
-use crate::slip::friction_series::FrictionSeries;
 
 /// The longest step, in units of √(M/κ) and of the time in which rates change by a factor of e.
 const LONGEST: f64 = 0.5;
 /// The change of speed in a step, in units of the law's own scale of speed.
 const SHARE: f64 = 0.25;
-/// Beyond a stop within a step velocity weakening is continued to negative speeds, down to this
-/// share of v_s.
-const BEYOND: f64 = 0.5;
 /// Steps that are not solved to the tolerance are shortened by this factor, at most so many times.
 const SHORTER: f64 = 0.5;
 const MOST_TIMES: u32 = 40;
@@ -92,11 +88,11 @@ impl Motion {
     /// μ_K at a speed in the motion's units, a little below 0 as well.
     fn friction_at(&self, speed: f64) -> f64 {
         let p = &self.parameters;
-        let speed = match (&self.friction, p.law.kind()) {
-            (FrictionSeries::Table(series), _) => return series.value(speed),
-            (_, Kind::Weakening { v_s, .. }) => (speed * p.velocity_unit).max(-BEYOND * v_s),
-            _ => speed * p.velocity_unit,
-        };
-        p.law.mu_k(speed)
+        match &self.friction {
+            FrictionSeries::Table(series) => series.value(speed),
+            _ => p
+                .law
+                .mu_k((speed * p.velocity_unit).max(p.law.least_speed())),
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! What ends a step: zeros of its polynomials, told apart from rounding.
 
 use super::{Event, Mode, Motion, ROUNDING};
-use crate::slip::friction_series::FrictionSeries;
-use crate::slip::series::{Coefficients, MOST_ORDER, first_zero};
-use crate::slip::table_series::Crossing;
+use crate::model::law::Crossing;
+use crate::model::law::FrictionSeries;
+use crate::model::series::{Coefficients, MOST_ORDER, first_zero};
 
 /// A block that was just released does not accelerate backwards. Under a law with μ_K(0⁺) = μ_S its
 /// acceleration begins at zero. The polynomials of its past before and after the release can then

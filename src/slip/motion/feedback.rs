@@ -15,9 +15,9 @@
 
 use super::{Integrator, Mode, Motion};
 use crate::model::elementary::rough_root;
+use crate::model::series::{Coefficients, MOST_ORDER, shifted};
 use crate::slip::collocation::fit;
 use crate::slip::history::{History, Reach, SMOOTH};
-use crate::slip::series::{Coefficients, MOST_ORDER, shifted};
 
 /// A kink matters if the polynomials on its two sides differ by more than this, in units of the
 /// tolerance.
@@ -257,7 +257,7 @@ impl Motion {
     /// for an elongation that always grows at this `rate`.
     pub(super) fn signal_is_even(&self, rate: f64, allowed: f64) -> bool {
         let (v, order) = self.signal_of_step();
-        let spread = crate::slip::series::spread(&v[..=order], self.step.length);
+        let spread = crate::model::series::spread(&v[..=order], self.step.length);
         (v[0] - self.even_signal(rate)).abs() + spread <= allowed
     }
 }

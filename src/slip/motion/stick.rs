@@ -2,7 +2,7 @@
 
 use super::{Motion, ROUNDING};
 use crate::model::Control;
-use crate::slip::series::spread;
+use crate::model::series::spread;
 
 /// How evenly the elongation of a stuck block has to grow, in units of the error of a step.
 const EVEN: f64 = 0.1;

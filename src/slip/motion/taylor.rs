@@ -2,7 +2,7 @@
 
 use super::{LEAST_ORDER, Mode, Motion};
 use crate::model::elementary::{rough_log2, rough_root};
-use crate::slip::friction_series::FrictionSeries;
+use crate::model::law::with_series;
 use crate::slip::history::SMOOTH;
 
 /// Speeds below this, in units of N0/√(κM), need no relative accuracy.
@@ -25,12 +25,7 @@ impl Motion {
             Mode::Forwards => 1.0,
             Mode::Backwards => -1.0,
         };
-        match &mut self.friction {
-            FrictionSeries::Coulomb(series) => step.slip(control, direction, series),
-            FrictionSeries::Weakening(series) => step.slip(control, direction, series),
-            FrictionSeries::Stribeck(series) => step.slip(control, direction, series),
-            FrictionSeries::Table(series) => step.slip(control, direction, series),
-        }
+        with_series!(&mut self.friction, series => step.slip(control, direction, series));
     }
 
     /// The order that a step no longer than `limit` needs. Where delays or kinks end steps long

@@ -9,7 +9,7 @@ use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
-use crate::model::friction::{FrictionLaw, Kind};
+use crate::model::law::{FrictionLaw, Kind};
 use crate::model::stop::Stop;
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::parameter::Parameter;

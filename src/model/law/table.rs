@@ -1,5 +1,5 @@
-//! The series of a friction law from a table: one cubic in the speed at a time, and where the speed
-//! leaves it.
+//! A law through measured points, as a monotone cubic curve. Its series is one cubic in the speed
+//! at a time.
 //!
 //! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of
 //! the elongation. At the first and the last point the slope of μ_K jumps, and with it the third
@@ -8,14 +8,99 @@
 //! between two cubics: the speed has to come back by more than rounding before the next crossing.
 //! The cubics differ by less than the tolerance so near their common end.
 
-use super::friction_series::Series;
-use super::series::{Coefficients, MOST_ORDER, first_zero, product};
-use crate::model::Table;
-use crate::model::table::Piece;
+use super::{FrictionLaw, Kind, Law, Range, Series, checked_at_rest, hull};
+use crate::model::ModelError;
+use crate::model::series::{Coefficients, MOST_ORDER, first_zero, product};
+use crate::model::table::{Piece, Table};
+
+impl FrictionLaw {
+    /// A measured curve.
+    ///
+    /// # Errors
+    /// μ_S must be finite and positive, and at least μ_K(0⁺), the first coefficient of the table.
+    pub fn table(table: Table, mu_s: f64) -> Result<Self, ModelError> {
+        let mu_s = ModelError::positive("mu_s", mu_s)?;
+        checked_at_rest("mu_k", table.mu_k()[0], mu_s)?;
+        Ok(Self::new(Kind::Table(table), mu_s))
+    }
+}
+
+impl Law for Table {
+    type Series = TableSeries;
+
+    fn mu_k(&self, speed: f64) -> f64 {
+        self.value(speed)
+    }
+
+    fn mu_prime(&self, speed: f64) -> f64 {
+        self.slope(speed)
+    }
+
+    fn last_speed(&self) -> Option<f64> {
+        self.speeds().last().copied()
+    }
+
+    fn slopes_between(&self, from: f64, to: f64) -> Range {
+        let ends = [from, to].map(|v| self.slope(v));
+        let pieces = pieces(self, from, to).map(|(piece, w)| piece_slopes(&piece, w));
+        hull(pieces.flat_map(|(low, high)| [low, high]).chain(ends))
+    }
+
+    /// Infinite where the slope jumps, at the ends.
+    fn curvatures_between(&self, from: f64, to: f64) -> Range {
+        let speeds = self.speeds();
+        let ends = [speeds[0], speeds[speeds.len() - 1]];
+        let jumps = |end: f64| from <= end && end <= to && self.slope(end) != 0.0;
+        if ends.into_iter().any(jumps) {
+            return (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        let bends = pieces(self, from, to).flat_map(|(piece, w)| piece_bends(&piece, w));
+        hull(bends)
+    }
+
+    fn series(&self, velocity_unit: f64) -> TableSeries {
+        TableSeries::new(self, velocity_unit)
+    }
+}
+
+/// The cubics of a table that cover speeds `from` to `to`, each with the range of w covered.
+fn pieces(table: &Table, from: f64, to: f64) -> impl Iterator<Item = (Piece, [f64; 2])> + '_ {
+    let region = |speed: f64| table.region(speed).unwrap_or_else(|region| region);
+    let last = table.speeds().len();
+    // A speed on a point belongs to the cubics on both sides.
+    (region(from)..=(region(to) + 1).min(last)).filter_map(move |region| {
+        let piece = table.piece(region);
+        let inside = 0 < region && region < last;
+        let start = if region == 0 { 0.0 } else { piece.from };
+        let end = match region {
+            0 => piece.from,
+            _ if inside => piece.from + piece.width,
+            _ => f64::INFINITY,
+        };
+        let (low, high) = (from.max(start), to.min(end));
+        let along = |v: f64| (v - piece.from) / piece.width;
+        (low <= high).then(|| (piece, [along(low), along(high)]))
+    })
+}
+
+/// The least and the greatest slope of a cubic for w between `from` and `to`.
+fn piece_slopes(piece: &Piece, [from, to]: [f64; 2]) -> Range {
+    let [_, c1, c2, c3] = piece.c;
+    let at = |w: f64| (c1 + w * (2.0 * c2 + w * 3.0 * c3)) / piece.width;
+    let extreme = -c2 / (3.0 * c3);
+    let inside = (from < extreme && extreme < to).then(|| at(extreme));
+    hull([at(from), at(to)].into_iter().chain(inside))
+}
+
+/// The curvatures of a cubic at both ends of a range of w; they are linear between them.
+fn piece_bends(piece: &Piece, ends: [f64; 2]) -> [f64; 2] {
+    let [_, _, c2, c3] = piece.c;
+    ends.map(|w| (2.0 * c2 + 6.0 * c3 * w) / (piece.width * piece.width))
+}
 
 /// μ_K n with μ_K = ((c₃ w + c₂) w + c₁) w + c₀, w = (|ẋ| − from)/width.
 #[derive(Debug, Clone)]
-pub(super) struct TableSeries {
+pub(crate) struct TableSeries {
     table: Table,
     velocity_unit: f64,
     /// The number of points below the cubic in use, and the cubic, with speeds in the motion's
@@ -30,7 +115,7 @@ pub(super) struct TableSeries {
 
 /// Where the speed leaves a cubic.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
+pub(crate) struct Crossing {
     /// Time since the start of the step.
     pub s: f64,
     /// The region that it enters.
@@ -41,7 +126,7 @@ pub(super) struct Crossing {
 
 impl TableSeries {
     /// At the speed 0, with ẋ in units of `velocity_unit`.
-    pub(super) fn new(table: &Table, velocity_unit: f64) -> Self {
+    pub(crate) fn new(table: &Table, velocity_unit: f64) -> Self {
         let zero = [0.0; MOST_ORDER + 1];
         let mut series = Self {
             table: table.clone(),
@@ -57,17 +142,8 @@ impl TableSeries {
         series
     }
 
-    /// Restarts at `speed`, whatever the speed was before.
-    pub(super) fn restart(&mut self, speed: f64) {
-        let region = match self.table.region(speed * self.velocity_unit) {
-            Ok(point) => point + 1,
-            Err(region) => region,
-        };
-        self.enter(region);
-    }
-
     /// Changes to the cubic of `region`.
-    pub(super) fn enter(&mut self, region: usize) {
+    pub(crate) fn enter(&mut self, region: usize) {
         let piece = self.table.piece(region);
         self.region = region;
         self.piece = Piece {
@@ -77,13 +153,8 @@ impl TableSeries {
         };
     }
 
-    /// Changes to the cubic that `other` is on.
-    pub(super) fn copy_place(&mut self, other: &Self) {
-        (self.region, self.piece) = (other.region, other.piece);
-    }
-
     /// μ_K by the cubic in use, also beyond its ends.
-    pub(super) fn value(&self, speed: f64) -> f64 {
+    pub(crate) fn value(&self, speed: f64) -> f64 {
         let w = (speed - self.piece.from) / self.piece.width;
         let [c0, c1, c2, c3] = self.piece.c;
         ((c3 * w + c2) * w + c1) * w + c0
@@ -96,7 +167,7 @@ impl TableSeries {
     }
 
     /// Where |ẋ|, whose series is `speed`, first leaves the cubic in use within `length`.
-    pub(super) fn crossing(&self, speed: &[f64], length: f64, tolerance: f64) -> Option<Crossing> {
+    pub(crate) fn crossing(&self, speed: &[f64], length: f64, tolerance: f64) -> Option<Crossing> {
         let last = self.table.speeds().len() - 1;
         let slack = (0.125 * tolerance * self.piece.width).max(noise(speed, length));
         let mut first: Option<Crossing> = None;
@@ -144,5 +215,17 @@ impl Series for TableSeries {
         self.slope[k] = product(&self.bend, &self.w, k) + first(c1);
         self.coefficient[k] = product(&self.slope, &self.w, k) + first(c0);
         product(&self.coefficient, load, k)
+    }
+
+    fn restart(&mut self, speed: f64) {
+        let region = match self.table.region(speed * self.velocity_unit) {
+            Ok(point) => point + 1,
+            Err(region) => region,
+        };
+        self.enter(region);
+    }
+
+    fn copy_place(&mut self, other: &Self) {
+        (self.region, self.piece) = (other.region, other.piece);
     }
 }
