@@ -13,8 +13,8 @@ const PATCHES: [(&str, usize, usize); 3] = [
     ("field", 1, 10),
     // A row.
     ("parameter", 1, 11),
-    // A row, and its formula: value, slope, bounds, scale and series.
-    ("law", 5, 56),
+    // Its file: value, slope, bounds and series; its line; its row.
+    ("law", 3, 75),
 ];
 
 fn run(command: &mut Command) {
