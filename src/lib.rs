@@ -49,6 +49,12 @@
 //! # Ok::<(), slipmap::model::ModelError>(())
 //! ```
 
+/// Version of this library and of the program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Git revision of the source of this library and of the program.
+pub const REVISION: &str = env!("SLIPMAP_GIT_REVISION");
+
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
 #[cfg(doc)]

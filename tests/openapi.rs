@@ -131,7 +131,7 @@ fn has(schema: &Value, kind: &str) -> bool {
 fn the_description_is_as_it_was() {
     let folder = Folder::new();
     let described = Described::of(&Serving::new(&folder));
-    let version = format!("\"{}\"", env!("CARGO_PKG_VERSION"));
+    let version = format!("\"{}\"", slipmap::VERSION);
     let text = serde_json::to_string_pretty(&described.0).unwrap();
     insta::assert_snapshot!(text.replace(&version, "\"[version]\""));
 }

@@ -122,7 +122,7 @@ const LAST: usize = 1000;
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
 #[command(
-    version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")")
+    version = format!("{} ({})", slipmap::VERSION, slipmap::REVISION)
 )]
 #[command(
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."

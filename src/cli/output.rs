@@ -96,8 +96,8 @@ pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Re
 pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
     let now = humantime::format_rfc3339_seconds(representable(SystemTime::now()));
     Provenance {
-        program_version: env!("CARGO_PKG_VERSION").into(),
-        git_revision: env!("SLIPMAP_GIT_REVISION").into(),
+        program_version: slipmap::VERSION.into(),
+        git_revision: slipmap::REVISION.into(),
         history: format!("{now} slipmap {command} {}", input.display()),
     }
 }

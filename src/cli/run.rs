@@ -298,7 +298,7 @@ fn has_tiles_of(path: &Path, plan: &Plan) -> bool {
 /// How a complete map of the same cells would change with `--fresh`.
 fn what_differs(map: &MapFile, plan: &Plan) -> String {
     let version = map.root_text(root::PROGRAM_VERSION).unwrap_or_default();
-    if version != env!("CARGO_PKG_VERSION") {
+    if version != slipmap::VERSION {
         format!(", computed by slipmap {version}; --fresh computes it again")
     } else if map.root_text(root::SWEEP).as_deref() != Some(&plan.spec.text) {
         ", with the same cells; the sweep file has changed otherwise: --fresh takes that over"

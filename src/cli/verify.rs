@@ -54,8 +54,8 @@ impl Args {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let program = Program {
-        version: env!("CARGO_PKG_VERSION"),
-        revision: env!("SLIPMAP_GIT_REVISION"),
+        version: slipmap::VERSION,
+        revision: slipmap::REVISION,
     };
     if trace_reader::is_trace(&args.map) {
         return verify_trace(args, program);

@@ -103,7 +103,7 @@ impl Known {
             motions: true,
         };
         Self {
-            version: env!("CARGO_PKG_VERSION"),
+            version: crate::VERSION,
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
             laws: formulas.into_iter().chain([table]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),

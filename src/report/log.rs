@@ -178,7 +178,7 @@ impl Observer for Log {
                 self.left.set(*left);
                 self.put(Entry::Started {
                     shard: self.shard.to_string(),
-                    program_version: env!("CARGO_PKG_VERSION").to_owned(),
+                    program_version: crate::VERSION.to_owned(),
                     process: std::process::id(),
                     threads: *threads,
                     cells: *cells,
