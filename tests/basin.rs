@@ -16,6 +16,7 @@ use slipmap::explore::basin::{BasinShare, Followed};
 use slipmap::slip::outcome::Outcome;
 use slipmap::sweep::cells::basin::{STUDENT_95, UNSEEN_95};
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::{Field, Plan, SweepSpec};
 
@@ -158,7 +159,7 @@ fn a_share_is_that_of_a_map_of_outcomes() {
     let grid = plan(&format!(
         "fields = [\"outcome\"]\n[axes]\n{a0}{x_dot0}{fixed}{law}"
     ));
-    let grid = Grid::compute(&Arc::new(grid), 2).unwrap();
+    let grid = Grid::compute(&Arc::new(grid), 2, Attended::silently(&Arc::default())).unwrap();
     let ends = &grid.cells.kinds[0].cells;
     let found = share(&format!(
         "fields = [\"basin_share\"]\n[axes]\nmass = [1.0]\n{fixed}{law}[basin]\nstarts = 8192\n\
@@ -238,7 +239,12 @@ fn undecided_starts_are_told() {
         "fields = [\"basin_share\"]\n[axes]\ntau = [4.15, 5.5]\n{LAW}[fixed]\nv0 = 0.35\n\
          alpha_v = -0.33\n[basin]\nstarts = 64\n[simulation]\nhorizon = 50.0\n"
     );
-    let grid = Grid::compute(&Arc::new(plan(&text)), 1).unwrap();
+    let grid = Grid::compute(
+        &Arc::new(plan(&text)),
+        1,
+        Attended::silently(&Arc::default()),
+    )
+    .unwrap();
     let cells: Vec<_> = grid.cells.columns.iter().map(|c| c.cells.clone()).collect();
     // At τ = 5.5 sliding is unstable, whatever is undecided.
     let error = UNSEEN_95 / STUDENT_95 / 64.0;
@@ -258,7 +264,12 @@ fn cells_without_a_cycle_have_no_share() {
              speeds = [0.0, 10.0]\nmu_k = [0.4, 6.4]\nmu_s = {mu_s}\n"
         )
     };
-    let grid = Grid::compute(&Arc::new(plan(&text("0.45", "1.0"))), 1).unwrap();
+    let grid = Grid::compute(
+        &Arc::new(plan(&text("0.45", "1.0"))),
+        1,
+        Attended::silently(&Arc::default()),
+    )
+    .unwrap();
     assert!(
         grid.cells
             .columns
@@ -273,7 +284,12 @@ fn cells_without_a_cycle_have_no_share() {
     );
     let sticks = share(&text("9.0", "1.0"));
     assert!(sticks.period.unwrap() > 20.0 && sticks.starts == 256);
-    let grid = Grid::compute(&Arc::new(plan(&text("9.0", "1e9"))), 1).unwrap();
+    let grid = Grid::compute(
+        &Arc::new(plan(&text("9.0", "1e9"))),
+        1,
+        Attended::silently(&Arc::default()),
+    )
+    .unwrap();
     let cells: Vec<_> = grid.cells.columns.iter().map(|c| c.cells[0]).collect();
     assert_eq!(
         (&cells[..], grid.cells.status[0]),
@@ -351,7 +367,12 @@ fn cells_of_maps_are_checked() {
         let share = row[row.len() - 2].parse::<f64>().unwrap();
         assert_eq!(cell["basin_share"].as_f64(), Some(share), "{rows}");
         assert_eq!(cell["starts"], 64);
-        let grid = Grid::compute(&Arc::new(plan.clone()), 2).unwrap();
+        let grid = Grid::compute(
+            &Arc::new(plan.clone()),
+            2,
+            Attended::silently(&Arc::default()),
+        )
+        .unwrap();
         let mut wrong = 0;
         for number in 0..plan.cells() {
             let columns = plan.shape()[1] as u64;

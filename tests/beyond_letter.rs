@@ -13,6 +13,7 @@ use slipmap::explore::stability::Wanted;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::model::stop::Stop;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::input::field::Storage;
 use slipmap::sweep::input::law_kind::{Formula, LawKind};
@@ -293,7 +294,7 @@ fn the_critical_stiffness_is_where_sliding_becomes_stable() {
 /// The cells of a sweep, computed into memory.
 fn cells(text: &str) -> Grid {
     let plan = Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap();
-    Grid::compute(&Arc::new(plan), 2).unwrap()
+    Grid::compute(&Arc::new(plan), 2, Attended::silently(&Arc::default())).unwrap()
 }
 
 fn column(grid: &Grid, field: &str) -> Vec<f64> {

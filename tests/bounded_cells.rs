@@ -7,6 +7,7 @@ mod walk;
 use std::sync::Arc;
 
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::{Plan, SweepSpec};
 use walk::Walk;
@@ -20,7 +21,7 @@ fn sweep(head: &str, delays: [f64; 2], points: usize) -> Grid {
          tau = {{ from = {from:?}, to = {to:?}, points = {points} }}\n[fixed]\n{head}\n"
     );
     let plan = Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap();
-    Grid::compute(&Arc::new(plan), 1).unwrap()
+    Grid::compute(&Arc::new(plan), 1, Attended::silently(&Arc::default())).unwrap()
 }
 
 /// One cell of twenty used to take a minute.

@@ -5,11 +5,13 @@
 mod map;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipmap::linear::Crossings;
 use slipmap::store::MapFile;
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::{Field, Plan, SweepSpec};
+use slipmap::sweep::{Event, Field, Observer, Plan, RunError, SweepSpec};
 
 const SWEEP: &str = "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = true\nbest = true\n[axes]\n\
     mu_prime = [-0.1, -0.3]\nalpha_n = { from = -3.0, to = 1.0, points = 61 }\n\
@@ -20,7 +22,7 @@ fn every_cell_has_its_place() {
     let spec: SweepSpec = SWEEP.parse().unwrap();
     let plan = Arc::new(Plan::new(spec).unwrap());
     assert!(plan.tiles.len() > 1, "several tiles");
-    let grid = Grid::compute(&plan, 2).unwrap();
+    let grid = Grid::compute(&plan, 2, Attended::silently(&Arc::default())).unwrap();
     let counts = grid.cells.n_unstable.as_deref().unwrap();
     let axes = &plan.spec.axes;
     let mut at = 0;
@@ -49,7 +51,7 @@ fn it_holds_what_the_map_holds() {
     let path = folder.path().join("map.h5");
     map::write(&plan, 2, &path);
     let map = MapFile::open(&path).unwrap();
-    let grid = Grid::compute(&plan, 1).unwrap();
+    let grid = Grid::compute(&plan, 1, Attended::silently(&Arc::default())).unwrap();
     let abscissa = &grid.cells.columns[0];
     assert_eq!(abscissa.field, Field::Abscissa);
     let cells = 61 * 431;
@@ -86,7 +88,8 @@ fn lines_in_pieces_and_kinds_have_their_place() {
     let whole = Arc::new(Plan::new(spec.clone()).unwrap());
     let pieces = Arc::new(Plan::with_tiles_of(4, spec).unwrap());
     assert!(pieces.tiles.len() > 6 && pieces.tiles.tile_shape()[1] < 7);
-    let [whole, pieces] = [whole, pieces].map(|plan| Grid::compute(&plan, 2).unwrap());
+    let [whole, pieces] = [whole, pieces]
+        .map(|plan| Grid::compute(&plan, 2, Attended::silently(&Arc::default())).unwrap());
     assert_eq!(whole.cells.status, pieces.cells.status);
     assert_eq!(whole.cells.kinds[0].cells, pieces.cells.kinds[0].cells);
     let [a, b] = [&whole, &pieces].map(|grid| &grid.cells.columns[0].cells);
@@ -120,9 +123,37 @@ fn what_does_not_fit_into_memory_is_refused() {
     let text = "[axes]\nalpha_v = { from = -1.0, to = 1.0, points = 30000 }\n\
         tau = { from = 0.1, to = 9.0, points = 10000000 }\n[fixed]\nmu_prime = -0.3\n";
     let plan = Plan::new(text.parse().unwrap()).unwrap();
-    let refused = Grid::compute(&Arc::new(plan), 1).unwrap_err();
+    let refused =
+        Grid::compute(&Arc::new(plan), 1, Attended::silently(&Arc::default())).unwrap_err();
     assert!(
         refused.to_string().contains("do not fit into memory"),
         "{refused}"
     );
+}
+
+/// Every thread count gives the same events and heeds a stop.
+#[test]
+fn it_is_observed_and_stopped() {
+    #[derive(Default)]
+    struct Counted(std::cell::Cell<u64>);
+    impl Observer for Counted {
+        fn event(&self, event: &Event) {
+            if let Event::PieceDone { cells } = event {
+                self.0.set(self.0.get() + cells);
+            }
+        }
+    }
+    let plan = Arc::new(Plan::new(SWEEP.parse::<SweepSpec>().unwrap()).unwrap());
+    for threads in [1, 2] {
+        let (observer, stop) = (Counted::default(), Arc::new(AtomicBool::new(false)));
+        let attended = Attended {
+            observer: &observer,
+            stop: &stop,
+        };
+        Grid::compute(&plan, threads, attended).unwrap();
+        assert_eq!(observer.0.get(), plan.cells(), "{threads} threads");
+        stop.store(true, Ordering::Relaxed);
+        let stopped = Grid::compute(&plan, threads, attended).unwrap_err();
+        assert!(matches!(stopped, RunError::Interrupted), "{stopped}");
+    }
 }

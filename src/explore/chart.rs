@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::linear::curves::CurvePiece;
 use crate::sweep::engine::RunError;
+use crate::sweep::events::Attended;
 use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::plan::memory::Memory;
 use crate::sweep::{Plan, SpecError, SweepSpec};
@@ -132,13 +133,14 @@ impl Chart {
     /// # Errors
     /// When it cannot be computed, or is stopped.
     pub fn of(plan: &Arc<Plan>, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
-        let grid = Grid::compute_here(plan, stop).map_err(|error| match error {
-            RunError::Interrupted => ChartError::Stopped,
-            RunError::Sink(TooLarge { .. }) => {
-                ChartError::Failed("there is no memory for its cells".into())
-            }
-            other => ChartError::Failed(other.to_string()),
-        })?;
+        let grid =
+            Grid::compute(plan, 1, Attended::silently(stop)).map_err(|error| match error {
+                RunError::Interrupted => ChartError::Stopped,
+                RunError::Sink(TooLarge { .. }) => {
+                    ChartError::Failed("there is no memory for its cells".into())
+                }
+                other => ChartError::Failed(other.to_string()),
+            })?;
         let curves = curves(&grid);
         Ok(Self { grid, curves })
     }

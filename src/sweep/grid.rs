@@ -1,7 +1,6 @@
 //! A sweep computed into memory, for programs that want numbers and no file.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use super::cells::best::BestSettings;
 use super::cells::boundaries::BoundaryPlane;
@@ -16,6 +15,7 @@ use super::plan::tile::{for_each_index, memory_strides, place_of};
 ///
 /// ```
 /// use std::sync::Arc;
+/// use slipmap::sweep::events::Attended;
 /// use slipmap::sweep::grid::Grid;
 /// use slipmap::sweep::{Plan, SweepSpec};
 ///
@@ -28,7 +28,7 @@ use super::plan::tile::{for_each_index, memory_strides, place_of};
 /// mu_prime = -0.3
 /// ".parse()?;
 /// let plan = Arc::new(Plan::new(sweep)?);
-/// let grid = Grid::compute(&plan, 1)?;
+/// let grid = Grid::compute(&plan, 1, Attended::silently(&Arc::default()))?;
 /// // Row by row, the last axis fastest: without control both roots are unstable at every delay.
 /// assert_eq!(grid.cells.n_unstable.as_deref().unwrap()[9..], [2; 9]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -57,36 +57,24 @@ pub struct TooLarge {
 }
 
 impl Grid {
-    /// Computes all of `plan` on `threads` threads, at least one. All cells are in memory at once.
+    /// Computes all of `plan` on `threads` threads, or on this one where `threads` is at most 1. All
+    /// cells are in memory at once. Once it is asked to stop it ends as [`engine::run`] does; this
+    /// thread alone checks that between pieces and, where cells take long, between cells.
     ///
     /// # Errors
-    /// When the system cannot provide the memory, a parameter is outside the model's range, or the
-    /// threads cannot be started.
-    pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<TooLarge>> {
-        let mut grid = Self::empty(plan)?;
-        let (todo, stop) = (Todo::all(plan.pieces()), Arc::new(AtomicBool::new(false)));
-        engine::run(
-            plan,
-            todo,
-            threads.max(1),
-            &mut Taken(&mut grid),
-            Attended::silently(&stop),
-        )?;
-        Ok(grid)
-    }
-
-    /// Computes all of `plan` on this thread. `stop` is checked between pieces.
-    ///
-    /// # Errors
-    /// As [`Grid::compute`], and when it is stopped.
-    pub fn compute_here(
+    /// When the system cannot provide the memory, a parameter is outside the model's range, the
+    /// threads cannot be started, or it is stopped.
+    pub fn compute(
         plan: &Arc<Plan>,
-        stop: &Arc<AtomicBool>,
+        threads: usize,
+        attended: Attended,
     ) -> Result<Self, RunError<TooLarge>> {
         let mut grid = Self::empty(plan)?;
-        let attended = Attended::silently(stop);
-        let todo = Todo::all(plan.pieces());
-        engine::run_here(plan, todo, &mut Taken(&mut grid), attended)?;
+        let (todo, mut taken) = (Todo::all(plan.pieces()), Taken(&mut grid));
+        match threads {
+            0 | 1 => engine::run_here(plan, todo, &mut taken, attended)?,
+            _ => engine::run(plan, todo, threads, &mut taken, attended)?,
+        }
         Ok(grid)
     }
 
