@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use program::{Folder, err, expect, out};
 use slipmap::store::MapFile;
-use slipmap::store::group_names::other_names;
+use slipmap::sweep::described::group_names::other_names;
 use slipmap::sweep::input::map_names;
 use slipmap::sweep::{Plan, SpecError, SweepSpec};
 

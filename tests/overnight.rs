@@ -26,8 +26,8 @@ use map::datasets;
 use program::{Folder, LONGEST, ends_within, err, expect, out};
 use slipmap::maps::assembly::Missing;
 use slipmap::maps::maker::{Job, Merge, make, make_in_memory, make_shard, merge};
-use slipmap::store::describe::Provenance;
 use slipmap::store::tiles::{Manifest, shards};
+use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Order, Plan, RunError, Shard};
 

@@ -40,7 +40,7 @@ use slipmap::linear::status::{CERTIFIED, MARGINAL, SAMPLED};
 use slipmap::maps::maker::make_in_memory;
 use slipmap::model::Groups;
 use slipmap::store::MapFile;
-use slipmap::store::describe::Provenance;
+use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::{Field, Plan};
 
 const SMALL: &str = "title = \"Small\"\nboundaries = true\n[axes]\nmu_prime = [-0.1, -0.2, -0.5]\n\

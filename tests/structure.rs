@@ -10,7 +10,15 @@ const LAYERS: [&str; 12] = [
     "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
-const ROOMS: [&str; 6] = ["events", "input", "plan", "cells", "engine", "grid"];
+const ROOMS: [&str; 7] = [
+    "events",
+    "input",
+    "plan",
+    "cells",
+    "described",
+    "engine",
+    "grid",
+];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();

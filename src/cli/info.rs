@@ -9,9 +9,9 @@ use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
 use slipmap::model::Shown;
 use slipmap::report::numbers::{bytes, counted, grouped, short, unit_behind};
-use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile, trace_reader};
 use slipmap::sweep::Field;
+use slipmap::sweep::described::schema::root;
 use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;

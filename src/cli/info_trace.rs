@@ -6,8 +6,8 @@ use serde::Serialize;
 use slipmap::report::numbers::{grouped, short};
 use slipmap::slip::outcome::Summary;
 use slipmap::store::TraceFile;
-use slipmap::store::trace_file::QUANTITIES;
 use slipmap::sweep::cells::trace::EVENTS;
+use slipmap::sweep::described::trace::QUANTITIES;
 use slipmap::sweep::input::units::Units;
 use utoipa::ToSchema;
 

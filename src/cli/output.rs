@@ -7,8 +7,8 @@ use std::time::SystemTime;
 use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
 use slipmap::report::picture;
-use slipmap::store::describe::Provenance;
 use slipmap::sweep::Plan;
+use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
@@ -95,11 +95,7 @@ pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Re
 /// The provenance of a file made now by `command` from `input`.
 pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
     let now = humantime::format_rfc3339_seconds(representable(SystemTime::now()));
-    Provenance {
-        program_version: slipmap::VERSION.into(),
-        git_revision: slipmap::REVISION.into(),
-        history: format!("{now} slipmap {command} {}", input.display()),
-    }
+    Provenance::here(format!("{now} slipmap {command} {}", input.display()))
 }
 
 /// Reports once that numbers have no units. If they have, each is followed by its unit.

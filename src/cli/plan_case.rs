@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::report::numbers::{bytes, grouped};
-use slipmap::store::trace_file::BYTES_OF_A_SAMPLE;
 use slipmap::sweep::CaseSpec;
 use slipmap::sweep::cells::trace::MOST_SAMPLES;
+use slipmap::sweep::described::trace::BYTES_OF_A_SAMPLE;
 use slipmap::sweep::input::case_file::Sampling;
 use utoipa::ToSchema;
 

@@ -9,9 +9,9 @@ use slipmap::maps::maker::{self, Job};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::report::progress::Progress;
-use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
 use slipmap::store::{MapFile, StoreError};
+use slipmap::sweep::described::schema::root;
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 

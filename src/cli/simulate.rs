@@ -8,9 +8,10 @@ use slipmap::model::Shown;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::table::write_samples;
-use slipmap::store::describe::Provenance;
 use slipmap::store::{Output, StoreError, trace_file, trace_reader};
 use slipmap::sweep::cells::trace::TraceError;
+use slipmap::sweep::described::root::Provenance;
+use slipmap::sweep::described::trace::QUANTITIES;
 use slipmap::sweep::input::setting_text::setting_text;
 use slipmap::sweep::input::simulation::DISTURBED;
 use slipmap::sweep::{CaseSpec, Parameter, Trace};
@@ -119,7 +120,7 @@ fn simulate_to_text(
         check_picture("--picture", picture, other)?;
     }
     let trace = args.follow(spec, signals)?;
-    let quantities: Vec<_> = trace_file::QUANTITIES.iter().collect();
+    let quantities: Vec<_> = QUANTITIES.iter().collect();
     to.write(signals, "there is no trace", |out, stop| {
         write_samples((spec, &trace), &quantities, false, out, stop)
     })?;

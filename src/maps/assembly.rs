@@ -3,13 +3,13 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::store::StoreError;
-use crate::store::best_writer::BestRow;
-use crate::store::describe::Provenance;
 use crate::store::map_writer::MapWriter;
 use crate::store::output::Output;
 use crate::store::source::Source;
 use crate::store::tiles::record::Content;
 use crate::sweep::cells::boundaries::plane;
+use crate::sweep::described::best::BestRow;
+use crate::sweep::described::root::Provenance;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::Piece;
 

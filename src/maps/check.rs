@@ -3,13 +3,13 @@
 use crate::linear::status::{DISAGREE, FLAGS};
 use crate::model::stop::Stop;
 use crate::store::sample::sample;
-use crate::store::schema::{STATUS, root};
 use crate::store::soundness::{check_checksums, check_schema, check_seal};
 use crate::store::tiles::RecordEncoder;
 use crate::store::tiles::record::Content;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
 use crate::sweep::cells::second_look::{Answer, Question, Stored, second_look};
+use crate::sweep::described::schema::{STATUS, root};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, spread};

@@ -3,9 +3,10 @@
 
 use super::check::Program;
 use crate::store::TraceFile;
-use crate::store::schema::{root, trace};
-use crate::store::trace_file::{QUANTITIES, TIME, numbers_of_case};
 use crate::sweep::cells::trace::{Sample, TraceEvent};
+use crate::sweep::described::root::numbers_of_case;
+use crate::sweep::described::schema::{root, trace};
+use crate::sweep::described::trace::{QUANTITIES, TIME};
 use crate::sweep::{Parameter, Trace};
 
 /// The largest difference allowed if another revision of the program computed the values, as a

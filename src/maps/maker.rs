@@ -7,14 +7,14 @@ use std::time::Duration;
 
 use super::assembly::{Assembled, Missing, assemble};
 use crate::store::StoreError;
-use crate::store::describe::Provenance;
 use crate::store::map_file::MapFile;
 use crate::store::output::Output;
-use crate::store::schema::root;
 use crate::store::source::InMemory;
 use crate::store::tiles::folder::BETWEEN_FILES;
 use crate::store::tiles::shards::{self, Shards};
 use crate::store::tiles::{Damaged, Manifest, TileFolder};
+use crate::sweep::described::root::Provenance;
+use crate::sweep::described::schema::root;
 use crate::sweep::events::{Attended, Event, Observer};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Order, Piece, Shard, Todo};

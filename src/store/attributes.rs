@@ -2,7 +2,7 @@
 
 use std::ffi::CString;
 
-use hdf5::{Attribute, H5Type, Location};
+use hdf5::{H5Type, Location};
 use hdf5_sys::h5a::{H5Aclose, H5Acreate2, H5Aread, H5Awrite};
 use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
@@ -12,6 +12,7 @@ use hdf5_sys::h5t::{
 };
 
 use super::values::{Number, is_of};
+use crate::sweep::described::{Attribute, Value};
 
 /// Writes a text attribute as a null-terminated string of fixed length.
 ///
@@ -61,12 +62,19 @@ pub(super) fn put_numbers<T: H5Type>(at: &Location, name: &str, values: &[T]) ->
     Ok(())
 }
 
-/// Describes a dataset of kinds: the number k stands for `names[k]`.
-pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5::Result<()> {
-    let values: Vec<u8> = (0..names.len() as u8).collect();
-    put_text(at, "long_name", long_name)?;
-    put_numbers(at, "flag_values", &values)?;
-    put_text(at, "flag_meanings", &names.join(" "))
+/// Writes an attribute as it is described. The dimensions of a variable are not written here.
+pub(super) fn put(at: &Location, Attribute { name, value }: &Attribute) -> hdf5::Result<()> {
+    match value {
+        Value::Text(text) => put_text(at, name, text),
+        Value::Dimensions => Ok(()),
+        Value::I8(numbers) => put_numbers(at, name, numbers),
+        Value::I32(numbers) => put_numbers(at, name, numbers),
+        Value::U8(numbers) => put_numbers(at, name, numbers),
+        Value::U16(numbers) => put_numbers(at, name, numbers),
+        Value::U32(numbers) => put_numbers(at, name, numbers),
+        Value::U64(numbers) => put_numbers(at, name, numbers),
+        Value::F64(numbers) => put_numbers(at, name, numbers),
+    }
 }
 
 /// The most bytes of an attribute: more than any that slipmap writes.
@@ -109,7 +117,7 @@ pub(super) fn one_number<T: Number>(at: &Location, name: &str) -> Option<T> {
 }
 
 /// Reads a numeric attribute that is stored as exactly the type `T`.
-pub(super) fn numbers<T: Number>(attribute: &Attribute) -> hdf5::Result<Vec<T>> {
+pub(super) fn numbers<T: Number>(attribute: &hdf5::Attribute) -> hdf5::Result<Vec<T>> {
     if !is_of::<T>(&attribute.dtype()) {
         return Err("an attribute of another type".into());
     }

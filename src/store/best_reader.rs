@@ -5,10 +5,10 @@ use hdf5::Group;
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::open;
-use super::schema::{BEST, best as names};
 use super::values::{Number, whole};
 use crate::linear::best::Kind;
 use crate::sweep::Parameter;
+use crate::sweep::described::schema::{BEST, best as names};
 use crate::sweep::plan::tile::index_of;
 
 /// The best setting of one plane of a map, in the units of the map.

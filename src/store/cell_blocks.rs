@@ -5,8 +5,8 @@ use hdf5::SliceOrIndex;
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::map_summary::for_each_piece;
-use super::schema::STATUS;
 use crate::sweep::Field;
+use crate::sweep::described::schema::STATUS;
 
 /// Approximate bytes of numbers in memory at once.
 const MOST_BYTES: usize = 32 << 20;

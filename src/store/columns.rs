@@ -3,8 +3,8 @@
 use super::chunk_layout::ChunkLayout;
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::schema::STATUS;
 use super::values::{Chunks, is_of};
+use crate::sweep::described::schema::STATUS;
 use crate::sweep::input::field::Storage;
 use crate::sweep::plan::MOST_TILES;
 

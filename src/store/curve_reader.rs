@@ -2,17 +2,18 @@
 
 use std::ops::{ControlFlow, Range};
 
-use hdf5::{Dataset, Group, H5Type, SliceOrIndex};
+use hdf5::{Dataset, Group, SliceOrIndex};
 
-use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, FillColumn, Named, Per};
 use super::error::StoreError;
-use super::group_names::names_of_axes;
 use super::map_file::MapFile;
 use super::open;
-use super::schema::BOUNDARIES;
 use super::values::{self, Number};
 use crate::linear::Direction;
 use crate::linear::curves::{CurveKind, CurvePiece, StableSide, Vertex};
+use crate::sweep::described::curve_column::{BoundaryColumn, ColumnMut, Named, Per};
+use crate::sweep::described::curve_rows::CurveRows;
+use crate::sweep::described::group_names::names_of_axes;
+use crate::sweep::described::schema::BOUNDARIES;
 
 /// A curve of a map with the values of the axes outside its plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,13 +117,12 @@ struct CurveColumns {
     vertices: usize,
 }
 
-/// Opens the datasets of the columns that describe curves.
+/// Opens datasets in the group of curves.
 struct Opening<'a> {
     group: Group,
     /// The parameters of the planes.
     parameter: &'a str,
     second: &'a str,
-    columns: Vec<Option<Dataset>>,
 }
 
 impl Opening<'_> {
@@ -135,8 +135,10 @@ impl Opening<'_> {
     }
 }
 
-impl EachColumn for Opening<'_> {
-    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+impl Opening<'_> {
+    /// The dataset of a column; none for those of corners, and for one that maps of the first
+    /// versions lack.
+    fn optional(&self, about: &BoundaryColumn) -> hdf5::Result<Option<Dataset>> {
         let name = match about.named {
             Named::Number(name, _) | Named::Frequency(name, _) | Named::Rate(name, _) => {
                 name.to_owned()
@@ -145,59 +147,10 @@ impl EachColumn for Opening<'_> {
             Named::Second(prefix) => format!("{prefix}{}", self.second),
         };
         let absent = about.optional && !self.group.link_exists(&name);
-        let column = match about.per == Per::Corner || absent {
-            true => None,
-            false => Some(self.column(&name)?),
-        };
-        self.columns.push(column);
-        Ok(())
-    }
-}
-
-/// Reads some rows of all columns.
-struct Reading<'a> {
-    columns: std::slice::Iter<'a, Option<Dataset>>,
-    curves: Range<usize>,
-    vertices: Range<usize>,
-}
-
-impl FillColumn for Reading<'_> {
-    fn fill<T: Number>(
-        &mut self,
-        about: &'static BoundaryColumn,
-        values: &mut Vec<T>,
-    ) -> hdf5::Result<()> {
-        let rows = match about.per {
-            Per::Curve => &self.curves,
-            Per::Vertex => &self.vertices,
-            Per::Corner => &(0..0),
-        };
-        *values = match self.columns.next() {
-            Some(Some(dataset)) => part(dataset, rows.clone())?,
-            _ => vec![T::default(); rows.len()],
-        };
-        Ok(())
-    }
-}
-
-/// Checks that every column has as many rows as there are curves or vertices.
-struct Fitting<'a> {
-    columns: std::slice::Iter<'a, Option<Dataset>>,
-    curves: usize,
-    vertices: usize,
-    fits: bool,
-}
-
-impl EachColumn for Fitting<'_> {
-    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
-        if let Some(Some(dataset)) = self.columns.next() {
-            self.fits &= match about.per {
-                Per::Curve => dataset.size() == self.curves,
-                Per::Vertex => dataset.size() == self.vertices,
-                Per::Corner => true,
-            };
+        match about.per == Per::Corner || absent {
+            true => Ok(None),
+            false => self.column(&name).map(Some),
         }
-        Ok(())
     }
 }
 
@@ -205,13 +158,14 @@ impl CurveColumns {
     fn of(map: &MapFile, (p, q): (usize, usize)) -> hdf5::Result<Self> {
         let names = map.names_in_curves();
         let name = |axis: usize| names[axis].as_str();
-        let mut opening = Opening {
+        let opening = Opening {
             group: map.group(BOUNDARIES)?,
             parameter: name(p),
             second: name(q),
-            columns: Vec::new(),
         };
-        CurveRows::default().each(&mut opening)?;
+        let rows = CurveRows::default();
+        let columns = rows.columns().into_iter();
+        let columns = columns.map(|(about, _)| opening.optional(about));
         let outer = (0..map.axes().len()).filter(|&axis| axis != p && axis != q);
         Ok(Self {
             vertex_count: opening.column("vertex_count")?,
@@ -219,12 +173,28 @@ impl CurveColumns {
             outer: outer
                 .map(|axis| opening.column(name(axis)))
                 .collect::<hdf5::Result<_>>()?,
-            columns: opening.columns,
+            columns: columns.collect::<hdf5::Result<_>>()?,
         })
     }
 
     fn curves(&self) -> usize {
         self.vertex_count.size()
+    }
+
+    /// Whether every column has as many rows as there are curves or vertices.
+    fn fit(&self) -> bool {
+        let rows = CurveRows::default();
+        let own = rows.columns().into_iter().zip(&self.columns);
+        let mut own = own.filter_map(|((about, _), column)| Some((about.per, column.as_ref()?)));
+        let fits = own.all(|(per, dataset)| match per {
+            Per::Curve => dataset.size() == self.curves(),
+            Per::Vertex => dataset.size() == self.vertices,
+            Per::Corner => true,
+        });
+        fits && self
+            .outer
+            .iter()
+            .all(|column| column.size() == self.curves())
     }
 
     /// How many curves, from `first` on, to read at once, and how many vertices they have: at least
@@ -255,25 +225,34 @@ impl CurveColumns {
         };
         let curves = first.0..first.0 + curves;
         let vertices = first.1..first.1 + vertices;
-        let mut fitting = Fitting {
-            columns: self.columns.iter(),
-            curves: self.curves(),
-            vertices: self.vertices,
-            fits: self.outer.iter().all(|c| c.size() == self.curves()),
-        };
-        CurveRows::default().each(&mut fitting)?;
-        if !fitting.fits || vertices.end > self.vertices {
+        if !self.fit() || vertices.end > self.vertices {
             return Ok(None);
         }
         let outer = self.outer.iter().map(|column| part(column, curves.clone()));
         let outer = outer.collect::<hdf5::Result<_>>()?;
         let mut rows = CurveRows::default();
-        rows.fill(&mut Reading {
-            columns: self.columns.iter(),
-            curves,
-            vertices,
-        })?;
+        for ((about, column), dataset) in rows.columns_mut().into_iter().zip(&self.columns) {
+            let rows = match about.per {
+                Per::Curve => curves.clone(),
+                Per::Vertex => vertices.clone(),
+                Per::Corner => 0..0,
+            };
+            match column {
+                ColumnMut::I8(values) => *values = some(dataset.as_ref(), rows)?,
+                ColumnMut::I32(values) => *values = some(dataset.as_ref(), rows)?,
+                ColumnMut::I64(values) => *values = some(dataset.as_ref(), rows)?,
+                ColumnMut::F64(values) => *values = some(dataset.as_ref(), rows)?,
+            }
+        }
         Ok(Some((rows, outer)))
+    }
+}
+
+/// Some values of a column; zeros where the map lacks it.
+fn some<T: Number>(column: Option<&Dataset>, rows: Range<usize>) -> hdf5::Result<Vec<T>> {
+    match column {
+        Some(dataset) => part(dataset, rows),
+        None => Ok(vec![T::default(); rows.len()]),
     }
 }
 

@@ -12,9 +12,11 @@ use super::contents_hash::contents_hash;
 pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
-use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use super::seal::{self, Seal};
 use super::values::{Chunks, Number, read, whole};
+use crate::sweep::described::schema::{
+    self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root,
+};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
 use crate::sweep::input::field::Storage;

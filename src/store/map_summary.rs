@@ -4,10 +4,10 @@ use hdf5::{Dataset, SliceOrIndex};
 
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::schema::STATUS;
 use super::summary::{FieldSummary, StatusCounts};
 use super::values::Number;
 use crate::sweep::Field;
+use crate::sweep::described::schema::STATUS;
 use crate::sweep::input::field::Storage;
 
 impl MapFile {

@@ -11,22 +11,24 @@ use hdf5_sys::h5p::H5P_DEFAULT;
 use sha2::{Digest, Sha256};
 
 use super::attributes::{put_numbers, put_text};
-use super::best_writer::{BestRow, BestWriter};
+use super::best_writer::BestWriter;
 use super::boundary_writer::BoundaryWriter;
 use super::contents_hash::contents_hash;
-use super::curve_rows::{CurveRows, outer_values};
-use super::describe::{Provenance, describe_parameter, put_root, put_scalars};
 use super::error::StoreError;
-use super::netcdf::{Dimensions, named};
+use super::netcdf::Dimensions;
 use super::output::Output;
-use super::schema::{self, STATUS, root};
 use super::seal;
 use super::soundness::as_written;
 use super::summary::{CellsSummary, FieldSummary};
 use super::tiles::record::TileContent;
-use super::variables::{Variables, put_fill};
+use super::variables::{Layout, create, describe, put_all, put_fill};
 use crate::sweep::Plan;
-use crate::sweep::input::field::Storage;
+use crate::sweep::described::best::BestRow;
+use crate::sweep::described::curve_rows::CurveRows;
+use crate::sweep::described::curves::outer_values;
+use crate::sweep::described::root::Provenance;
+use crate::sweep::described::schema::{self, BEST, BOUNDARIES, root};
+use crate::sweep::described::{Described, Variable};
 use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::plan::tile::Tile;
 
@@ -49,15 +51,23 @@ pub struct MapWriter<'p> {
 /// A dataset of cells, and the hash of its chunks so far.
 struct Cells {
     dataset: Dataset,
+    variable: Variable,
     chunks: Sha256,
 }
 
 impl Cells {
-    fn of(dataset: Dataset) -> Self {
+    fn of(dataset: Dataset, variable: Variable) -> Self {
         Self {
             dataset,
+            variable,
             chunks: Sha256::new(),
         }
+    }
+
+    /// Writes the fill value of integers.
+    fn put_fill(&self) -> hdf5::Result<()> {
+        let Variable { element, fill, .. } = self.variable;
+        fill.map_or(Ok(()), |fill| put_fill(&self.dataset, element, fill))
     }
 }
 
@@ -74,7 +84,7 @@ impl<'p> MapWriter<'p> {
         let failed = |error| StoreError::hdf5("write", output.path())(error);
         let file = create_file(output.part()).map_err(failed)?;
         let mut dimensions = Dimensions::default();
-        let (datasets, boundaries, best) =
+        let (cells, boundaries, best) =
             fill_file(&file, plan, provenance, &mut dimensions).map_err(failed)?;
         Ok(Self {
             plan,
@@ -82,7 +92,7 @@ impl<'p> MapWriter<'p> {
             dimensions,
             boundaries,
             best,
-            cells: datasets.into_iter().map(Cells::of).collect(),
+            cells,
             summary: CellsSummary::default(),
             output,
         })
@@ -145,10 +155,9 @@ impl<'p> MapWriter<'p> {
             .resize(fields.len(), FieldSummary::default());
         let told = self.cells.iter().zip(fields).zip(&self.summary.fields);
         for ((variable, field), summary) in told {
-            let storage = field.storage();
-            summary.put(&variable.dataset, storage, cells)?;
+            summary.put(&variable.dataset, field.storage(), cells)?;
             if summary.missing(cells) > 0 {
-                put_fill(&variable.dataset, storage)?;
+                variable.put_fill()?;
             }
         }
         let (Some(status), counts) = (self.cells.last(), &self.summary.status) else {
@@ -156,7 +165,7 @@ impl<'p> MapWriter<'p> {
         };
         counts.put(&status.dataset, cells)?;
         match counts.computed < cells {
-            true => put_fill(&status.dataset, Storage::Kind),
+            true => status.put_fill(),
             false => Ok(()),
         }
     }
@@ -183,8 +192,8 @@ impl<'p> MapWriter<'p> {
             }
             self.dimensions.finish()?;
             self.file.flush()?;
-            let fields = self.plan.spec.fields.iter().map(|field| field.name());
-            let cells: Vec<&str> = fields.chain([STATUS]).collect();
+            let cells = self.cells.iter().map(|cells| &*cells.variable.name);
+            let cells: Vec<&str> = cells.collect();
             let hash = contents_hash(&self.file, &cells, stop)?;
             put_text(&self.file, schema::CONTENTS_SHA256, &hash)?;
             self.file.flush()
@@ -236,7 +245,7 @@ pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
         .create_excl(path)
 }
 
-type Contents = (Vec<Dataset>, Option<BoundaryWriter>, Option<BestWriter>);
+type Contents = (Vec<Cells>, Option<BoundaryWriter>, Option<BestWriter>);
 
 fn fill_file(
     file: &File,
@@ -244,42 +253,31 @@ fn fill_file(
     provenance: &Provenance,
     dimensions: &mut Dimensions,
 ) -> hdf5::Result<Contents> {
-    put_root(file, plan, provenance)?;
-    let axes = plan
-        .spec
-        .axes
-        .iter()
-        .map(|axis| {
-            let dataset = named(file.new_dataset_builder())
-                .with_data(&axis.values)
-                .create(axis.parameter.name())?;
-            describe_parameter(&dataset, &axis.parameter, &plan.spec.units)?;
-            dimensions.add(dataset, None)
-        })
-        .collect::<hdf5::Result<Vec<_>>>()?;
-    let spec = &plan.spec;
-    let scalars = put_scalars(file, &spec.scalars(), &spec.units)?;
-    let mut variables = Variables {
-        file,
-        plan,
-        dimensions,
-        axes: axes.clone(),
-        scalars,
+    let described = Described::of_map(plan, provenance);
+    let root = described.root();
+    put_all(file, &root.attributes)?;
+    let layout = Layout {
+        shape: plan.shape().into(),
+        chunk: Some(plan.tiles.tile_shape().to_vec()),
+        shuffle_bytes: false,
     };
-    let mut datasets = Vec::new();
-    for &field in &plan.spec.fields {
-        datasets.push(variables.field(field)?);
+    let mut cells = Vec::new();
+    for variable in &root.variables {
+        let dataset = create(file, variable, &layout)?;
+        describe(&dataset, variable, dimensions)?;
+        if variable.values.is_none() {
+            cells.push(Cells::of(dataset, variable.clone()));
+        }
     }
-    datasets.push(variables.status()?);
-    let boundaries = plan
-        .boundary_plane
-        .map(|plane| BoundaryWriter::create(file, dimensions, plan, plane))
+    let boundaries = described
+        .group(BOUNDARIES)
+        .map(|about| BoundaryWriter::create(file, &described, about, plan, dimensions))
         .transpose()?;
-    let best = plan
-        .best_plane()
-        .map(|plane| BestWriter::create(file, dimensions, &axes, plan, plane))
+    let best = described
+        .group(BEST)
+        .map(|about| BestWriter::create(file, &described, about, dimensions))
         .transpose()?;
-    Ok((datasets, boundaries, best))
+    Ok((cells, boundaries, best))
 }
 
 /// Hands a whole compressed chunk to the library.

@@ -1,7 +1,6 @@
 //! Maps and traces on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only
-//! place that knows HDF5.
+//! place that knows HDF5. What they say is described in [`crate::sweep::described`].
 //!
-//! - [`schema`]: names, meanings and format version
 //! - [`tiles`]: finished pieces of a sweep in files of their own, checked when they are read
 //! - [`map_writer`]: the map's file, under a temporary name until it is complete
 //! - [`map_file`]: reads maps
@@ -9,8 +8,8 @@
 //! - [`output`]: the temporary name, the lock, the final rename
 //! - `attributes`: attributes in the forms that every netCDF-4 reader understands
 //! - `best_reader`: reads the best settings of a map
-//! - `best_writer`: best settings of every plane as a group with the map's dimensions
-//! - `boundary_writer`: curves as CF contiguous ragged arrays
+//! - `best_writer`: writes the best settings of every plane
+//! - `boundary_writer`: writes curves, plane by plane
 //! - `cell_blocks`: reads cells in the order of the axes, block by block
 //! - `chunk_layout`: how chunks are stored, and how to decode them; a chunk is inflated to its own
 //!   size and no further
@@ -18,13 +17,8 @@
 //! - `columns`: the columns of a map, chunk by chunk as stored in the file
 //! - `contents_hash`: a hash of everything in a map besides its cells
 //! - `curve_reader`: reads the crossing curves of a map
-//! - `curve_rows`: the curves of a plane as columns of numbers, declared once for the tiles, the
-//!   map and its reader
-//! - `curve_words`: the words for kinds, directions and sides of curves
-//! - `describe`: what a file says of itself: who made it, the sweep, the friction law, parameters
 //! - `durable`: files written whole, synced and renamed
 //! - `error`: why a map or trace could not be written or read, with the file's name and the cause
-//! - `group_names`: names of parameters in the group of curves
 //! - `lock`: locks that end with the process that holds them
 //! - `map_summary`: ranges and counts, from a map's attributes or from all its cells
 //! - `netcdf`: dimension scales as netCDF-4 readers expect them
@@ -40,11 +34,11 @@
 //!   attributes
 //! - `trace_reader`: recognises traces and reads them
 //! - `values`: reads values, chunk by chunk
-//! - `variables`: the datasets of cells in a map
+//! - `variables`: groups and datasets, written as they are described
 
 mod attributes;
 mod best_reader;
-pub(crate) mod best_writer;
+mod best_writer;
 mod boundary_writer;
 pub mod cell_blocks;
 pub mod chunk_layout;
@@ -52,12 +46,8 @@ mod codec;
 pub mod columns;
 mod contents_hash;
 pub mod curve_reader;
-pub mod curve_rows;
-pub mod curve_words;
-pub mod describe;
 mod durable;
 mod error;
-pub mod group_names;
 mod lock;
 pub mod map_file;
 mod map_summary;
@@ -67,7 +57,6 @@ mod open;
 pub mod output;
 pub mod regular;
 pub(crate) mod sample;
-pub mod schema;
 mod seal;
 pub mod soundness;
 pub mod source;

@@ -22,20 +22,16 @@ pub(super) struct Dimension {
     uses: Vec<(Dataset, u32)>,
 }
 
-/// All dimensions of a file.
+/// All dimensions of a file, in the order in which they are described.
 #[derive(Default)]
 pub(super) struct Dimensions {
     list: Vec<Dimension>,
 }
 
-/// A dimension of a [`Dimensions`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct DimensionId(usize);
-
 impl Dimensions {
     /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` is none for a
     /// scale with coordinates.
-    pub(super) fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
+    pub(super) fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<()> {
         put_text(&scale, "CLASS", "DIMENSION_SCALE")?;
         let path = scale.name();
         let own = path.rsplit('/').next().unwrap_or(&path);
@@ -45,36 +41,38 @@ impl Dimensions {
             scale,
             uses: Vec::new(),
         });
-        Ok(DimensionId(self.list.len() - 1))
+        Ok(())
     }
 
-    /// Adds a dimension without coordinates that grows with the data.
-    pub(super) fn add_bare(&mut self, group: &Group, name: &str) -> hdf5::Result<DimensionId> {
+    /// Adds a dimension without coordinates, which can grow.
+    pub(super) fn add_bare(
+        &mut self,
+        group: &Group,
+        name: &str,
+        length: usize,
+    ) -> hdf5::Result<()> {
         let scale = named(group.new_dataset_builder())
             .empty::<f32>()
             .shape(0..)
             .chunk(1 << 16)
             .create(name)?;
+        scale.resize(length)?;
         self.add(
             scale,
             Some("This is a netCDF dimension but not a netCDF variable.         0"),
         )
     }
 
-    /// The scale of a dimension.
-    pub(super) fn scale(&self, id: DimensionId) -> &Dataset {
-        &self.list[id.0].scale
+    /// The scale of the dimension at this place.
+    pub(super) fn scale(&self, place: usize) -> &Dataset {
+        &self.list[place].scale
     }
 
     /// Attaches these dimensions to `dataset`, in order.
-    pub(super) fn attach(
-        &mut self,
-        dataset: &Dataset,
-        dimensions: &[DimensionId],
-    ) -> hdf5::Result<()> {
+    pub(super) fn attach(&mut self, dataset: &Dataset, dimensions: &[usize]) -> hdf5::Result<()> {
         let mut lists = Vec::with_capacity(dimensions.len());
-        for (place, id) in dimensions.iter().enumerate() {
-            let dimension = &mut self.list[id.0];
+        for (place, &dimension) in dimensions.iter().enumerate() {
+            let dimension = &mut self.list[dimension];
             let reference: ObjectReference1 = dimension.scale.reference(".")?;
             lists.push(VarLenArray::from_slice(&[reference]));
             dimension.uses.push((dataset.clone(), place as u32));

@@ -11,10 +11,10 @@ use sha2::{Digest, Sha256};
 use super::attributes::text;
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::schema;
 use super::seal::{self, Seal};
 use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
+use crate::sweep::described::schema;
 use crate::sweep::plan::{Plan, in_hexadecimal};
 
 /// The longest wait for the library's lock on a file. A child process that is being started shares

@@ -7,11 +7,11 @@ use hdf5::{File, Group};
 use super::attributes::{one_number, text};
 use super::error::StoreError;
 use super::open;
-use super::schema::{self, trace};
-use super::trace_file::{QUANTITIES, TIME};
 use super::values::{Number, whole};
 use crate::slip::outcome::{Outcome, Summary};
 use crate::sweep::cells::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
+use crate::sweep::described::schema::{self, trace};
+use crate::sweep::described::trace::{QUANTITIES, TIME};
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 /// A trace, read into memory as a whole.

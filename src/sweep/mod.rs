@@ -13,6 +13,7 @@
 //! storage. Tiles do not exchange data, so a map does not depend on the number of threads.
 //!
 //! - `cells`: one thread's work: the third room
+//! - `described`: what maps and traces say, as plain data
 //! - `engine`: pieces over threads into a sink; the only file that imports rayon
 //! - `events`: the events of a running sweep, for observers
 //! - `grid`: a sweep computed into memory, for programs that want no file
@@ -20,6 +21,7 @@
 //! - `plan`: cells, tiles, planes of curves, the plan's hash
 
 pub mod cells;
+pub mod described;
 pub mod engine;
 pub mod events;
 pub mod grid;

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5::{Dataset, Group};
 use slipmap::maps::maker::make_in_memory;
-use slipmap::store::describe::Provenance;
 use slipmap::sweep::Plan;
+use slipmap::sweep::described::root::Provenance;
 
 /// Computes the map of a plan.
 pub(crate) fn write(plan: &Plan, threads: usize, path: &Path) {

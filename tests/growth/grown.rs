@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use slipmap::maps::maker::make_in_memory;
-use slipmap::store::describe::Provenance;
+use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::{Plan, SweepSpec};
 
 /// Without control, at c = 0 and above.

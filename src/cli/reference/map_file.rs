@@ -1,11 +1,11 @@
 //! The contents of map and trace files.
 
 use slipmap::linear::best::Kind;
-use slipmap::store::curve_rows::CurveRows;
-use slipmap::store::group_names;
-use slipmap::store::schema::{self, root, summary};
-use slipmap::store::trace_file::{QUANTITIES, TIME};
 use slipmap::sweep::cells::trace::{EVENTS, MODES};
+use slipmap::sweep::described::curve_rows::CurveRows;
+use slipmap::sweep::described::group_names;
+use slipmap::sweep::described::schema::{self, root, summary};
+use slipmap::sweep::described::trace::{QUANTITIES, TIME};
 
 use super::markdown::{code, heading, paragraph, table};
 
@@ -128,7 +128,7 @@ pub(super) fn map_file(page: &mut String) {
             schema::PARAMETER
         ),
     );
-    let rows = CurveRows::described().unwrap_or_default().into_iter();
+    let rows = CurveRows::described().into_iter();
     let rows = rows.map(|(per, name, meaning)| [code(&name), per.to_owned(), meaning]);
     table(page, ["name", "one for each", "what it is"], rows.collect());
     heading(page, 2, &format!("The group `{}`", schema::BEST));

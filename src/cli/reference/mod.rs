@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 use clap::ValueEnum;
 use slipmap::linear::status::FLAGS;
-use slipmap::store::schema;
+use slipmap::sweep::described::schema;
 use slipmap::sweep::input::field::Storage;
 use slipmap::sweep::input::keys::{self, Key};
 use slipmap::sweep::input::law_kind::{Formula, LawKind};

@@ -5,8 +5,8 @@ use super::options::{Named, PictureOptions};
 use super::text::{self, Rich};
 use crate::report::visible::visible_line;
 use crate::store::MapFile;
-use crate::store::schema::root;
 use crate::sweep::Field;
+use crate::sweep::described::schema::root;
 
 /// The field that a picture shows.
 pub(super) struct Choice {

@@ -4,11 +4,11 @@
 use super::view::View;
 use crate::model::stop::Stop;
 use crate::store::curve_reader::curves_of;
-use crate::store::curve_rows::CurveRows;
 use crate::store::map_file::MapCurve;
-use crate::store::schema::root;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::cells::boundaries::trace_spanned;
+use crate::sweep::described::curve_rows::CurveRows;
+use crate::sweep::described::schema::root;
 use crate::sweep::input::axis::spans_curves;
 use crate::sweep::{Parameter, Plan};
 

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::{About, Column, Table, TableError, put_number};
 use crate::linear::status::FLAGS;
 use crate::store::cell_blocks::CellBlock;
-use crate::store::schema::{STATUS, root};
 use crate::store::{MapAxis, MapFile};
 use crate::sweep::Field;
+use crate::sweep::described::schema::{STATUS, root};
 use crate::sweep::engine::STATUS_FILL;
 
 /// The most values of an axis whose texts are kept; for more, texts are made again for each cell.

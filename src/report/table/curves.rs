@@ -8,9 +8,11 @@ use super::cells::{about, of_axis};
 use super::{Column, Table, TableError};
 use crate::linear::Direction;
 use crate::store::MapFile;
-use crate::store::curve_words::{CURVE_KINDS, DIRECTIONS, direction_along, stable_sides};
 use crate::store::map_file::MapCurve;
-use crate::store::schema::DEGREE_OF_STABILITY;
+use crate::sweep::described::curve_words::{
+    CURVE_KINDS, DIRECTIONS, direction_along, stable_sides,
+};
+use crate::sweep::described::schema::DEGREE_OF_STABILITY;
 
 /// Writes the curves of a map, one row per vertex: the number of the curve, the axes outside its
 /// plane, its degree of stability, branch, direction, stable side and kind, then the vertex. Axes

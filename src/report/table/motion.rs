@@ -4,9 +4,9 @@ use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{About, Column, Table, TableError};
-use crate::store::schema::trace;
-use crate::store::trace_file::{Quantity, TIME};
 use crate::sweep::cells::trace::MODES;
+use crate::sweep::described::schema::trace;
+use crate::sweep::described::trace::{Quantity, TIME};
 use crate::sweep::input::simulation::{DISTURBED, assumed_start};
 use crate::sweep::{CaseSpec, Parameter, Trace};
 

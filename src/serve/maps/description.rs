@@ -6,9 +6,9 @@ use crate::linear::status::FLAGS;
 use crate::maps::look::Look;
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
-use crate::store::schema::root;
 use crate::store::tiles::GrowingMap;
 use crate::sweep::Field;
+use crate::sweep::described::schema::root;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::search::LIMIT;
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::super::chunk_layout::ChunkLayout;
 use super::super::curve_reader::{MapCurve, curves_of};
-use super::super::curve_rows::outer_values;
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::super::stamp::Stamp;
@@ -14,6 +13,7 @@ use super::reader::TileReader;
 use super::record::Content;
 use super::shards;
 use crate::sweep::cells::boundaries::plane;
+use crate::sweep::described::curves::outer_values;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::Piece;
 use crate::sweep::plan::tile::place_of;

@@ -8,11 +8,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::describe::Provenance;
 use super::super::error::StoreError;
 use super::super::regular::{self, NotRead};
-use super::super::schema;
 use super::record::{Digest, digest};
+use crate::sweep::described::root::Provenance;
+use crate::sweep::described::schema;
 use crate::sweep::plan::{Plan, in_hexadecimal};
 use crate::sweep::{Shard, SpecError, SweepSpec};
 

@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 
-use super::super::best_writer::BestRow;
 use super::super::codec::{Chunk, ChunkCodec, decode_bytes};
-use super::super::curve_rows::CurveRows;
 use super::super::summary::CellsSummary;
+use crate::sweep::described::best::BestRow;
+use crate::sweep::described::curve_rows::CurveRows;
 use crate::sweep::engine::{Computed, Encode};
 use crate::sweep::plan::pieces::Piece;
 

@@ -2,7 +2,7 @@
 
 use slipmap::store::FieldSummary;
 use slipmap::store::curve_reader::curves_of;
-use slipmap::store::curve_rows::CurveRows;
+use slipmap::sweep::described::curve_rows::CurveRows;
 
 /// Columns of any lengths with any numbers.
 pub(super) fn rows(data: &[u8]) {

@@ -1,7 +1,7 @@
 //! Texts: sweep files, case files, columns of a friction law, manifests.
 
-use slipmap::store::describe::Provenance;
 use slipmap::store::tiles::Manifest;
+use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::input::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};
 

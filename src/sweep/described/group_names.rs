@@ -3,41 +3,25 @@
 
 use std::collections::HashSet;
 
-use hdf5::H5Type;
-
-use super::curve_rows::{BoundaryColumn, CORNER, CurveRows, EachColumn, Named, Per};
+use super::curve_column::{CORNER, Per};
+use super::curve_rows::CurveRows;
 
 /// Stands before the name of a parameter that something else in the group has.
 pub const PREFIX: &str = "parameter_";
 
-/// Collects the names of the columns that are not of parameters.
-struct Naming(Vec<&'static str>);
-
-impl EachColumn for Naming {
-    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
-        match about.named {
-            Named::Number(name, _) | Named::Frequency(name, _) | Named::Rate(name, _) => {
-                self.0.push(name);
-            }
-            Named::Parameter(_) | Named::Second(_) => {}
-        }
-        Ok(())
-    }
-}
-
 /// Every name in the group of curves that is not of a parameter.
 #[must_use]
 pub fn other_names() -> Vec<&'static str> {
-    let mut naming = Naming(Per::ALL.map(Per::name).into());
-    // The visitor refuses nothing.
-    let _ = CurveRows::default().each(&mut naming);
-    naming.0
+    let rows = CurveRows::default();
+    let columns = rows.columns().into_iter();
+    let own = columns.filter_map(|(about, _)| about.named.own().map(|(name, _)| name));
+    Per::ALL.map(Per::name).into_iter().chain(own).collect()
 }
 
 /// The names of `axes` in the group of curves, in order. Each axis has one variable there, and one
 /// with [`CORNER`] before its name. It keeps its own name where both are free; else [`PREFIX`]
 /// stands before it, as often as needed.
-pub(super) fn names_of_axes(axes: &[&str]) -> Vec<String> {
+pub(crate) fn names_of_axes(axes: &[&str]) -> Vec<String> {
     names_beside(other_names(), axes)
 }
 

@@ -1,97 +1,15 @@
 //! The curves of a plane as columns of numbers, in the form in which tiles and the map hold them.
 
-use hdf5::H5Type;
+#[cfg(feature = "store")]
 use serde::{Deserialize, Serialize};
 
+use super::curve_column::{
+    BoundaryColumn, CORNER, Column, ColumnMut, DescribedColumn, Named, Per, column,
+};
 use super::curve_words::{CURVE_KINDS, DIRECTION, DIRECTIONS, STABLE_SIDE, STABLE_SIDES};
 use super::schema::{CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY};
-use super::values::Number;
 use crate::linear::curves::{Corner, CurvePiece};
-use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
-
-/// Stands before the name of a parameter where its values are those of corners.
-pub(super) const CORNER: &str = "corner_";
-
-/// What each number of a column belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Per {
-    /// One piece of a curve.
-    Curve,
-    /// A vertex of a piece. The vertices of all pieces follow one another.
-    Vertex,
-    /// A point where two curves cross.
-    Corner,
-}
-
-impl Per {
-    /// The dimensions of columns.
-    pub(super) const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
-
-    /// The name of the dimension.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Curve => "curve",
-            Self::Vertex => "vertex",
-            Self::Corner => "corner",
-        }
-    }
-}
-
-/// What a column is called, and the unit of its numbers.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Named {
-    /// A number with this name and this meaning.
-    Number(&'static str, &'static str),
-    /// A frequency.
-    Frequency(&'static str, &'static str),
-    /// A rate of decay.
-    Rate(&'static str, &'static str),
-    /// The first parameter of the plane; its name follows this prefix.
-    Parameter(&'static str),
-    /// The second parameter of the plane, the delay where it is an axis; its name follows this
-    /// prefix.
-    Second(&'static str),
-}
-
-/// Describes a column.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BoundaryColumn {
-    pub per: Per,
-    pub named: Named,
-    /// Numbers that stand for kinds, and the words for them.
-    pub flags: Option<(&'static [i8], &'static str)>,
-    /// The dimension whose elements the column counts, see CF's contiguous ragged arrays.
-    pub counts: Option<&'static str>,
-    /// Maps of the first versions lack the column; it then counts as zero in all rows.
-    pub optional: bool,
-}
-
-const fn column(per: Per, named: Named) -> BoundaryColumn {
-    BoundaryColumn {
-        per,
-        named,
-        flags: None,
-        counts: None,
-        optional: false,
-    }
-}
-
-/// Visits every column, in the order of the map.
-pub(super) trait EachColumn {
-    /// A column with its numbers.
-    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, values: &[T]) -> hdf5::Result<()>;
-}
-
-/// Fills every column, in the order of the map.
-pub(super) trait FillColumn {
-    /// Appends to a column.
-    fn fill<T: Number>(
-        &mut self,
-        about: &'static BoundaryColumn,
-        values: &mut Vec<T>,
-    ) -> hdf5::Result<()>;
-}
 
 macro_rules! boundary_columns {
     (
@@ -99,7 +17,8 @@ macro_rules! boundary_columns {
         $Rows:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $row:expr;)+ }
     ) => {
         $(#[$about])*
-        #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Default, PartialEq)]
+        #[cfg_attr(feature = "store", derive(Serialize, Deserialize))]
         pub struct $Rows {
             /// Whether some curves are left out because too many cross the plane.
             pub left_out: bool,
@@ -107,38 +26,33 @@ macro_rules! boundary_columns {
         }
 
         impl $Rows {
-            /// Shows all columns to `visitor`, in order.
-            pub(super) fn each(&self, visitor: &mut impl EachColumn) -> hdf5::Result<()> {
-                $({
+            /// All columns with what they are, in the order of the map.
+            #[must_use]
+            pub fn columns(&self) -> Vec<(&'static BoundaryColumn, Column<'_>)> {
+                vec![$({
                     const ABOUT: &BoundaryColumn = &$row;
-                    visitor.see(ABOUT, &self.$name)?;
-                })+
-                Ok(())
+                    (ABOUT, Column::from(&self.$name))
+                }),+]
             }
 
-            /// Has `visitor` fill all columns, in order.
-            pub(super) fn fill(&mut self, visitor: &mut impl FillColumn) -> hdf5::Result<()> {
-                $({
+            /// All columns with what they are, to be filled.
+            #[must_use]
+            pub fn columns_mut(&mut self) -> Vec<(&'static BoundaryColumn, ColumnMut<'_>)> {
+                vec![$({
                     const ABOUT: &BoundaryColumn = &$row;
-                    visitor.fill(ABOUT, &mut self.$name)?;
-                })+
-                Ok(())
+                    (ABOUT, ColumnMut::from(&mut self.$name))
+                }),+]
             }
 
             /// Appends the rows of `more`.
-            pub(super) fn extend(&mut self, more: &Self) {
+            pub(crate) fn extend(&mut self, more: &Self) {
                 self.left_out |= more.left_out;
                 $(self.$name.extend_from_slice(&more.$name);)+
             }
 
             /// Removes all rows.
-            pub(super) fn clear(&mut self) {
+            pub(crate) fn clear(&mut self) {
                 $(self.$name.clear();)+
-            }
-
-            /// The length of each column, with what its numbers belong to.
-            fn lengths(&self) -> Vec<(Per, usize)> {
-                vec![$(($row.per, self.$name.len())),+]
             }
         }
     };
@@ -256,44 +170,13 @@ boundary_columns! {
     }
 }
 
-/// A column for the reference of map files: what its numbers belong to, its name, its meaning.
-pub type DescribedColumn = (&'static str, String, String);
-
-struct Describing(Vec<DescribedColumn>);
-
-impl EachColumn for Describing {
-    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
-        let (name, mut meaning) = match about.named {
-            Named::Number(name, meaning)
-            | Named::Frequency(name, meaning)
-            | Named::Rate(name, meaning) => (name.to_owned(), meaning.to_owned()),
-            Named::Parameter(prefix) => (format!("{prefix}PARAMETER"), "the parameter".into()),
-            Named::Second(prefix) => (
-                format!("{prefix}SECOND"),
-                "the second parameter, the delay in planes with it".into(),
-            ),
-        };
-        if let Some((values, words)) = about.flags {
-            let words = values.iter().zip(words.split(' '));
-            let words: Vec<_> = words
-                .map(|(value, word)| format!("{value} {word}"))
-                .collect();
-            meaning = format!("{meaning}: {}", words.join(", "));
-        }
-        self.0.push((about.per.name(), name, meaning));
-        Ok(())
-    }
-}
-
 impl CurveRows {
     /// All columns in words.
-    ///
-    /// # Errors
-    /// None: nothing is read or written.
-    pub fn described() -> hdf5::Result<Vec<DescribedColumn>> {
-        let mut described = Describing(Vec::new());
-        Self::default().each(&mut described)?;
-        Ok(described.0)
+    #[must_use]
+    pub fn described() -> Vec<DescribedColumn> {
+        let rows = Self::default();
+        let columns = rows.columns().into_iter();
+        columns.map(|(about, _)| about.described()).collect()
     }
 
     /// The rows of the curves of a plane.
@@ -366,22 +249,13 @@ impl CurveRows {
             usize::try_from(n).ok().and_then(|n| sum.checked_add(n))
         });
         let (curves, corners) = (Some(self.curves()), Some(self.corners()));
-        self.lengths().into_iter().all(|(per, length)| {
-            Some(length)
-                == match per {
+        self.columns().into_iter().all(|(about, column)| {
+            Some(column.len())
+                == match about.per {
                     Per::Curve => curves,
                     Per::Vertex => vertices,
                     Per::Corner => corners,
                 }
         })
     }
-}
-
-/// The values of the axes outside the planes of curves, for the plane at `index`.
-pub(super) fn outer_values(plan: &Plan, index: &[usize]) -> Vec<f64> {
-    let (p, tau) = plan.boundary_plane.unwrap_or((usize::MAX, usize::MAX));
-    let axes = plan.spec.axes.iter().zip(index).enumerate();
-    axes.filter(|&(axis, _)| axis != p && axis != tau)
-        .map(|(_, (axis, &i))| axis.values[i])
-        .collect()
 }

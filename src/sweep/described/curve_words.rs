@@ -1,6 +1,6 @@
 //! The words for the kinds of curves, of their crossings and of their sides.
 
-use crate::sweep::Parameter;
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::quantity::Quantity;
 
 /// How a pair of roots crosses, in the words of the map: for −1, 0, 1.
