@@ -213,7 +213,7 @@ impl Draft {
         }
         let parameter = Parameter::from_name(entry.key)
             .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
-        self.given.give(entry, parameter)?;
+        self.given.give(parameter, &entry.key_span)?;
         Ok(parameter.into())
     }
 

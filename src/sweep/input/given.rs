@@ -9,7 +9,7 @@ use super::law_kind::{Formula, LawKind, NO_MOTIONS};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
-use super::toml_reader::{Entry, SpecError};
+use super::toml_reader::{Entry, SpecError, unknown_key};
 use super::units::Units;
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
@@ -25,13 +25,17 @@ pub(super) struct GivenParameters {
 
 impl GivenParameters {
     /// Records that the file gives `parameter`, as a value or as an axis.
-    pub(super) fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
+    pub(super) fn give(
+        &mut self,
+        parameter: Parameter,
+        key: &Range<usize>,
+    ) -> Result<(), SpecError> {
         if self.place(parameter).is_some() {
             let message = format!("{} is given twice", parameter.name());
-            return Err(SpecError::at(entry.key_span.clone(), message)
+            return Err(SpecError::at(key.clone(), message)
                 .help("a parameter is either an axis or a fixed value"));
         }
-        self.places.push((parameter, entry.key_span.clone()));
+        self.places.push((parameter, key.clone()));
         Ok(())
     }
 
@@ -98,11 +102,20 @@ impl GivenParameters {
     }
 
     fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
-        self.give(entry, parameter)?;
-        let value = entry.number()?;
+        self.give(parameter, &entry.key_span)?;
+        self.put(parameter, entry.number()?, &entry.span)
+    }
+
+    /// Takes the value of a given parameter, which stands at `place`.
+    fn put(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        place: &Range<usize>,
+    ) -> Result<(), SpecError> {
         parameter
             .check(value)
-            .map_err(|e| SpecError::at(entry.span.clone(), e.to_string()))?;
+            .map_err(|e| SpecError::at(place.clone(), e.to_string()))?;
         self.values.push((parameter, value));
         Ok(())
     }
@@ -139,12 +152,9 @@ impl GivenParameters {
         if name == LawKind::TABLE {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
-        let law = Formula::from_name(name).ok_or_else(|| {
-            let formulas = Formula::ALL.into_iter().map(Formula::name);
-            let meant = did_you_mean(name, formulas.chain([LawKind::TABLE]));
-            entry
-                .error(format!("unknown friction law \"{name}\""))
-                .help(format!("{meant}known: {}", LawKind::names()))
+        let law = Formula::named(name).map_err(|error| SpecError {
+            help: error.help,
+            ..entry.error(error.message)
         })?;
         if let Some((place, column)) = self.table.any() {
             let message = format!("{column} has no meaning with the {name} law");
@@ -217,6 +227,20 @@ impl GivenParameters {
         self.places.iter()
     }
 
+    /// A setting of the given values, checked as a point of sliding; parameters in `optional` may
+    /// be left out.
+    pub(super) fn sliding(&self, optional: &[Parameter]) -> Result<Setting, SpecError> {
+        self.check(optional, None)?;
+        let setting = self.setting();
+        let open = optional
+            .iter()
+            .any(|p| self.place(*p).is_none() && *p != Parameter::Tau);
+        match setting.sliding_point() {
+            Err(error) if !open => Err(self.refused(&error)),
+            _ => Ok(setting),
+        }
+    }
+
     /// A setting of the given values, and defaults for all others.
     pub(super) fn setting(&self) -> Setting {
         let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));
@@ -247,6 +271,54 @@ impl GivenParameters {
                 span: span.cloned(),
                 help: Some(error.help(Parameter::key)),
             }
+        })
+    }
+}
+
+impl Setting {
+    /// A setting of named numbers, with the checks of a sweep file. What is not given has its
+    /// default value; parameters in `varied` need no value, as if they were axes.
+    ///
+    /// ```
+    /// use slipmap::sweep::{Parameter, Setting};
+    ///
+    /// let of = |name, value| Setting::checked([("mu_prime", -0.3), (name, value)], None, &[]);
+    /// assert_eq!(of("tau", 4.15).unwrap().get(Parameter::Tau), 4.15);
+    /// assert_eq!(of("taw", 4.15).unwrap_err().message, "unknown key `taw`");
+    /// ```
+    ///
+    /// # Errors
+    /// In the words of sweep files, without a place: names that are unknown or have no meaning with
+    /// the law, numbers out of range, and parameters that are missing.
+    pub fn checked<'n>(
+        numbers: impl IntoIterator<Item = (&'n str, f64)>,
+        law: Option<LawKind>,
+        varied: &[Parameter],
+    ) -> Result<Self, SpecError> {
+        let nowhere = 0..0;
+        let mut given = GivenParameters {
+            law: law.map(|law| (law, nowhere.clone())),
+            ..GivenParameters::default()
+        };
+        let mut take = |name: &str, value| {
+            let parameter = Parameter::from_name(name).ok_or_else(|| {
+                let law = given.law.as_ref().map(|(law, _)| law);
+                let all = Parameter::ALL.into_iter();
+                let known = all.filter(|p| p.of_start() || Self::takes(law, *p));
+                unknown_key(name, name, &known.map(Parameter::name).collect::<Vec<_>>())
+            })?;
+            given.give(parameter, &nowhere)?;
+            given.put(parameter, value, &nowhere)
+        };
+        let taken = numbers
+            .into_iter()
+            .try_for_each(|(name, value)| take(name, value));
+        let checked = taken
+            .and_then(|()| given.check_start())
+            .and_then(|()| given.sliding(varied));
+        checked.map_err(|error| SpecError {
+            span: None,
+            ..error
         })
     }
 }
@@ -285,5 +357,68 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             units.key_span.clone(),
             "units: force, length and time are needed, all three",
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::input::point_file::{PointOf, PointSpec};
+
+    /// Every refusal has the words of the same setting in a file, whose places are left out.
+    #[test]
+    fn named_numbers_are_refused_in_the_words_of_files() {
+        let weakening = || Some(LawKind::Formula(Formula::Weakening));
+        let law = "[friction]\nlaw = \"weakening\"\n";
+        for (numbers, law, text) in [
+            (
+                vec![("tau", -1.0), ("mu_prime", 0.1)],
+                None,
+                "[fixed]\ntau = -1\nmu_prime = 0.1\n",
+            ),
+            (vec![("mu_prime", 0.1)], None, "[fixed]\nmu_prime = 0.1\n"),
+            (vec![("tau", 1.0)], None, "[fixed]\ntau = 1\n"),
+            (
+                vec![("tau", 1.0), ("mu_prime", 0.1), ("v0", 1.0)],
+                None,
+                "[fixed]\ntau = 1\nmu_prime = 0.1\nv0 = 1\n",
+            ),
+            (
+                vec![("tau", 1.0), ("v0", 1.0), ("mu0", 0.5)],
+                weakening(),
+                &*format!("[fixed]\ntau = 1\nv0 = 1\n{law}mu0 = 0.5\n"),
+            ),
+            (
+                vec![("tau", 1.0), ("v0", 1.0), ("mu0", 2.0), ("v_s", 0.5)],
+                weakening(),
+                &*format!("[fixed]\ntau = 1\nv0 = 1\n{law}mu0 = 2\nv_s = 0.5\n"),
+            ),
+        ] {
+            let told = Setting::checked(numbers, law, &[]).unwrap_err();
+            let expected = PointSpec::read(text, PointOf::Sliding).unwrap_err();
+            let expected = SpecError {
+                span: None,
+                ..expected
+            };
+            assert_eq!(told, expected, "{text}");
+        }
+        let twice = [("tau", 1.0), ("tau", 2.0)];
+        let told = Setting::checked(twice, None, &[]).unwrap_err();
+        assert_eq!(told.message, "tau is given twice");
+        let unknown = Setting::checked([("alpha_w", 1.0)], None, &[]).unwrap_err();
+        assert!(unknown.help.unwrap().starts_with("did you mean `alpha_v`?"));
+        let not_finite = [("tau", f64::NAN), ("mu_prime", 0.1)];
+        assert!(Setting::checked(not_finite, None, &[]).is_err());
+    }
+
+    #[test]
+    fn what_varies_needs_no_value() {
+        let law = Some(LawKind::Formula(Formula::Coulomb));
+        let numbers = [("mu0", 0.5), ("alpha_n", -2.0)];
+        let varied = [Parameter::Tau, Parameter::V0];
+        let setting = Setting::checked(numbers, law.clone(), &varied).unwrap();
+        assert_eq!(setting.get(Parameter::AlphaN), -2.0);
+        assert!(setting.get(Parameter::V0).is_nan());
+        assert!(Setting::checked(numbers, law, &varied[..1]).is_err());
     }
 }

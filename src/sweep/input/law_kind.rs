@@ -1,8 +1,10 @@
 //! The friction law of a sweep.
 
 use super::catalogue::catalogue;
+use super::nearest::did_you_mean;
 use super::parameter::{Group, Parameter};
 use super::setting::Setting;
+use super::toml_reader::SpecError;
 use crate::model::{FrictionLaw, ModelError, RateAndState, Table};
 
 /// The facts about a law that is described by parameters alone.
@@ -86,6 +88,19 @@ impl Formula {
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|law| law.name() == name)
+    }
+
+    /// The law of that name.
+    ///
+    /// # Errors
+    /// Suggests a law for an unknown name.
+    pub fn named(name: &str) -> Result<Self, SpecError> {
+        Self::from_name(name).ok_or_else(|| {
+            let formulas = Self::ALL.into_iter().map(Self::name);
+            let meant = did_you_mean(name, formulas.chain([LawKind::TABLE]));
+            SpecError::whole(format!("unknown friction law \"{name}\""))
+                .help(format!("{meant}known: {}", LawKind::names()))
+        })
     }
 }
 

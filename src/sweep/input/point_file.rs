@@ -92,7 +92,7 @@ impl PointSpec {
             .protocol;
         let mut setting = given.setting();
         match of {
-            PointOf::Sliding => given.check(&[], None)?,
+            PointOf::Sliding => setting = given.sliding(&[])?,
             PointOf::CriticalVelocity => check_critical(&given, &mut setting)?,
             PointOf::CriticalVelocityOfSetting => check_critical_of(&given, &mut setting)?,
             PointOf::Law => {
@@ -100,11 +100,8 @@ impl PointSpec {
             }
         }
         // Without v0, only the law itself can be checked.
-        let posed = match of {
-            PointOf::Sliding => setting.sliding_point().map(drop),
-            _ => setting.friction_law().map(drop),
-        };
-        posed.map_err(|error| given.refused(&error))?;
+        let law = setting.friction_law();
+        law.map_err(|error| given.refused(&error))?;
         Ok(Self {
             protocol: protocol.at(&setting),
             setting,

@@ -259,7 +259,7 @@ impl Setting {
 
     /// True for the parameters that a setting with this law can have, apart from those of its
     /// start.
-    fn takes(law: Option<&LawKind>, parameter: Parameter) -> bool {
+    pub(super) fn takes(law: Option<&LawKind>, parameter: Parameter) -> bool {
         match (law, parameter.group()) {
             (_, Group::Limit) => false,
             (Some(_), Group::Sliding) => false,

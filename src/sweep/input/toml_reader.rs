@@ -48,6 +48,13 @@ impl SpecError {
     }
 }
 
+/// An error about an unknown key with this path, with the known ones.
+pub(super) fn unknown_key(path: &str, key: &str, known: &[&str]) -> SpecError {
+    let meant = did_you_mean(key, known.iter().copied());
+    SpecError::whole(format!("unknown key `{path}`"))
+        .help(format!("{meant}known here: {}", known.join(", ")))
+}
+
 /// A value with its key, its path in the text, and the places of both.
 pub(super) struct Entry<'t> {
     pub key: &'t str,
@@ -99,12 +106,10 @@ impl<'t> Entry<'t> {
 
     /// An error about an unknown key, with the known ones.
     pub(super) fn unknown(&self, known: &[&str]) -> SpecError {
-        let error = SpecError::at(
-            self.key_span.clone(),
-            format!("unknown key `{}`", self.path),
-        );
-        let meant = did_you_mean(self.key, known.iter().copied());
-        error.help(format!("{meant}known here: {}", known.join(", ")))
+        SpecError {
+            span: Some(self.key_span.clone()),
+            ..unknown_key(&self.path, self.key, known)
+        }
     }
 
     /// An error about a key that is known, but not here; `help` says where it belongs.
