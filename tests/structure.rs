@@ -10,14 +10,16 @@ const LAYERS: [&str; 12] = [
     "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
-const ROOMS: [&str; 7] = [
+const ROOMS: [&str; 9] = [
     "events",
     "input",
     "plan",
     "cells",
     "described",
+    "sink",
     "engine",
     "grid",
+    "evaluate",
 ];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {

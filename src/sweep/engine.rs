@@ -3,19 +3,22 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, channel, sync_channel};
 use std::time::{Duration, Instant};
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator,
+};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::cells::best::{BestSettings, best_of_plane, best_plane};
-use super::cells::boundaries::{BoundaryPlane, plane, trace_plane};
+use super::cells::best::{best_of_plane, best_plane};
+use super::cells::boundaries::{plane, trace_plane};
 pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
 pub use super::cells::worker::Worker;
 use super::events::{Attended, Event, Observer};
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
+pub use super::sink::{Computed, Encode, Sink};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 
@@ -25,65 +28,6 @@ const PIECES_WAITING: usize = 2;
 const PAUSE: Duration = Duration::from_millis(200);
 /// How long pieces in progress may take after a stop; later ones are dropped.
 const GRACE: Duration = Duration::from_millis(1200);
-
-/// The place where pieces go. Encoding happens on the computing threads, writing on the thread that
-/// called [`run`].
-pub trait Sink {
-    /// The encoder of pieces; each thread has its own.
-    type Encoder: Encode;
-    /// Why writing failed.
-    type Error;
-
-    /// A new encoder, for one thread.
-    fn encoder(&self) -> Self::Encoder;
-
-    /// Takes a piece. Pieces come in no particular order.
-    ///
-    /// # Errors
-    /// Ends the sweep.
-    fn write(
-        &mut self,
-        piece: Piece,
-        encoded: <Self::Encoder as Encode>::Encoded,
-    ) -> Result<(), Self::Error>;
-
-    /// Does what is to be done at intervals while no piece comes.
-    ///
-    /// # Errors
-    /// Ends the sweep.
-    fn pause(&mut self) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
-    /// Makes all written pieces durable. The engine calls this at the end of the sweep, even after
-    /// an error.
-    ///
-    /// # Errors
-    /// Becomes the error of the sweep, unless it already has one.
-    fn flush(&mut self) -> Result<(), Self::Error> {
-        Ok(())
-    }
-}
-
-/// The contents of a computed piece.
-#[derive(Debug, Clone, Copy)]
-pub enum Computed<'a> {
-    /// The curves of a plane.
-    Curves(&'a BoundaryPlane),
-    /// The best settings of a plane; none where a parameter is outside the model's range.
-    Best(Option<&'a BestSettings>),
-    /// The cells of a tile.
-    Tile(&'a TileBuffers),
-}
-
-/// Encodes computed pieces for a sink.
-pub trait Encode: Send + 'static {
-    /// A piece ready to be written.
-    type Encoded: Send + 'static;
-
-    /// Encodes a piece.
-    fn encode(&mut self, piece: Piece, computed: Computed) -> Self::Encoded;
-}
 
 /// Why a sweep ended before its last piece.
 #[derive(Debug, thiserror::Error)]
@@ -213,13 +157,67 @@ pub fn each<I: Send, M, T: Send>(
         let mut memory = begin();
         return Ok(items.into_iter().map(|i| work(&mut memory, i)).collect());
     }
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| RunError::Threads {
-        threads,
-        reason: error.to_string(),
-    })?;
+    let pool = pool(ThreadPoolBuilder::new(), threads)?;
     let items = items.into_par_iter().with_min_len(TOGETHER);
     Ok(pool.install(|| items.map_init(begin, work).collect()))
+}
+
+/// Does `work` on each of `items`, on `threads` threads or on this one where `threads` is at most
+/// 1, and returns the results in order. The observer is told the number of `cells` of an item. Work
+/// that a stop cuts short has no result.
+///
+/// # Errors
+/// When it is stopped, or the threads cannot be started.
+pub fn each_attended<I: Sync, T: Send>(
+    items: &[I],
+    threads: usize,
+    attended: Attended,
+    cells: impl Fn(&I) -> u64 + Sync,
+    work: impl Fn(&I, &Stop) -> Option<T> + Sync,
+) -> Result<Vec<T>, RunError<Infallible>> {
+    let Attended { observer, stop } = attended;
+    let all = items.iter().map(&cells).sum();
+    observer.event(&Event::Started {
+        cells: all,
+        left: all,
+        threads: threads.max(1),
+    });
+    let stop = Stop::when(stop);
+    let one = |item: &I, done: &dyn Fn(u64)| {
+        let result = (!stop.is_set()).then(|| work(item, &stop)).flatten()?;
+        done(cells(item));
+        Some(result)
+    };
+    let done = |cells| observer.event(&Event::PieceDone { cells });
+    let results: Option<Vec<T>> = if threads <= 1 || cfg!(target_family = "wasm") {
+        items.iter().map(|item| one(item, &done)).collect()
+    } else {
+        let pool = pool(ThreadPoolBuilder::new(), threads)?;
+        let (sender, receiver) = channel();
+        let mut results = None;
+        pool.in_place_scope(|scope| {
+            let (results, one) = (&mut results, &one);
+            scope.spawn(move |_| {
+                // The receiver stays until all is sent.
+                let send = |cells| sender.send(cells).unwrap_or_default();
+                *results = items.par_iter().map(|item| one(item, &send)).collect();
+            });
+            receiver.into_iter().for_each(done);
+        });
+        results
+    };
+    let results = results.ok_or(RunError::Interrupted)?;
+    observer.event(&Event::Finished);
+    Ok(results)
+}
+
+/// A pool of `threads` threads.
+fn pool<E>(builder: ThreadPoolBuilder, threads: usize) -> Result<ThreadPool, RunError<E>> {
+    let pool = builder.num_threads(threads).build();
+    pool.map_err(|error| RunError::Threads {
+        threads,
+        reason: error.to_string(),
+    })
 }
 
 /// A computed piece, or the error of the model.
@@ -236,15 +234,8 @@ fn start<S: Sink>(
     sink: &S,
     stop: &Arc<AtomicBool>,
 ) -> Result<Arrivals<S>, RunError<S::Error>> {
-    let pool: ThreadPool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        // A panic shows in the missing work of the thread.
-        .panic_handler(|_| {})
-        .build()
-        .map_err(|error| RunError::Threads {
-            threads,
-            reason: error.to_string(),
-        })?;
+    // A panic shows in the missing work of the thread.
+    let pool = pool(ThreadPoolBuilder::new().panic_handler(|_| {}), threads)?;
     let (sender, receiver) = sync_channel(PIECES_WAITING * threads);
     let todo = Arc::new(todo);
     for _ in 0..threads {

@@ -57,9 +57,9 @@ pub struct TooLarge {
 }
 
 impl Grid {
-    /// Computes all of `plan` on `threads` threads, or on this one where `threads` is at most 1. All
-    /// cells are in memory at once. Once it is asked to stop it ends as [`engine::run`] does; this
-    /// thread alone checks that between pieces and, where cells take long, between cells.
+    /// Computes all of `plan` on `threads` threads, or on this one where `threads` is at most 1.
+    /// All cells are in memory at once. Once it is asked to stop it ends as [`engine::run`] does;
+    /// this thread alone checks that between pieces and, where cells take long, between cells.
     ///
     /// # Errors
     /// When the system cannot provide the memory, a parameter is outside the model's range, the
@@ -81,7 +81,7 @@ impl Grid {
     fn empty(plan: &Arc<Plan>) -> Result<Self, RunError<TooLarge>> {
         let cells = room_for(plan).map_err(RunError::Sink)?;
         Ok(Self {
-            cells: TileBuffers::of_cells(plan, cells),
+            cells: TileBuffers::of_cells(&plan.spec.fields, cells),
             curves: vec![BoundaryPlane::default(); plan.boundary_planes() as usize],
             best: vec![None; plan.best_planes() as usize],
             strides: memory_strides(plan.shape()),

@@ -15,18 +15,22 @@
 //! - `cells`: one thread's work: the third room
 //! - `described`: what maps and traces say, as plain data
 //! - `engine`: pieces over threads into a sink; the only file that imports rayon
+//! - `evaluate`: fields at any points, which need not be a grid
 //! - `events`: the events of a running sweep, for observers
 //! - `grid`: a sweep computed into memory, for programs that want no file
 //! - `input`: what the user wrote: the first of the rooms of a sweep
 //! - `plan`: cells, tiles, planes of curves, the plan's hash
+//! - `sink`: where the computed pieces of a sweep go
 
 pub mod cells;
 pub mod described;
 pub mod engine;
+pub mod evaluate;
 pub mod events;
 pub mod grid;
 pub mod input;
 pub mod plan;
+mod sink;
 
 pub use cells::root_columns::relaxation_time;
 pub use cells::trace::Trace;

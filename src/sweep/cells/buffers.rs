@@ -39,12 +39,11 @@ impl TileBuffers {
     /// Buffers for tiles of `plan`, all fill values.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
-        Self::of_cells(plan, plan.tiles.tile_cells())
+        Self::of_cells(&plan.spec.fields, plan.tiles.tile_cells())
     }
 
-    /// Buffers for `cells` cells of `plan`, all fill values.
-    pub(in crate::sweep) fn of_cells(plan: &Plan, cells: usize) -> Self {
-        let fields = &plan.spec.fields;
+    /// Buffers for `cells` cells with these fields, all fill values.
+    pub(in crate::sweep) fn of_cells(fields: &[Field], cells: usize) -> Self {
         Self {
             status: vec![STATUS_FILL; cells],
             n_unstable: fields
@@ -55,7 +54,8 @@ impl TileBuffers {
         }
     }
 
-    /// Copies the cells at the places `there` of other buffers of the same plan to the places `at`.
+    /// Copies the cells at the places `there` of other buffers of the same fields to the places
+    /// `at`.
     pub(in crate::sweep) fn take_cells(
         &mut self,
         at: Range<usize>,

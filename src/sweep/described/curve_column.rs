@@ -17,7 +17,7 @@ pub enum Per {
 }
 
 impl Per {
-    /// All of them.
+    /// The dimensions of columns.
     pub const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
 
     /// The name of the dimension.

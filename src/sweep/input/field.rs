@@ -926,6 +926,22 @@ impl Field {
         matches!(self.source(), Source::Basin(_))
     }
 
+    /// These fields and what bounds their errors, in the order of a map. An abscissa alone would
+    /// claim more than is certified: the margin of the certificate comes with it. Likewise a share
+    /// comes with its error and its upper bound.
+    #[must_use]
+    pub fn with_bounds(mut fields: Vec<Self>) -> Vec<Self> {
+        if fields.contains(&Self::Abscissa) {
+            fields.push(Self::CertificateMargin);
+        }
+        if fields.contains(&Self::BasinShare) {
+            fields.extend([Self::BasinShareError, Self::BasinShareUpper]);
+        }
+        fields.sort_unstable();
+        fields.dedup();
+        fields
+    }
+
     /// True for fields of the limit of a short delay, which only sweeps of it have.
     #[must_use]
     pub const fn of_limit(self) -> bool {

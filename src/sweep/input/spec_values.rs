@@ -109,18 +109,7 @@ pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
     }
-    // An abscissa alone would claim more than is certified: the margin of the certificate comes
-    // with it.
-    if fields.contains(&Field::Abscissa) && !fields.contains(&Field::CertificateMargin) {
-        fields.push(Field::CertificateMargin);
-    }
-    // Likewise a share comes with its error and its upper bound.
-    if fields.contains(&Field::BasinShare) {
-        fields.extend([Field::BasinShareError, Field::BasinShareUpper]);
-    }
-    fields.sort_unstable();
-    fields.dedup();
-    Ok(fields)
+    Ok(Field::with_bounds(fields))
 }
 
 pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, SpecError> {
