@@ -122,6 +122,33 @@ fn files_are_short_or_say_why() {
     }
 }
 
+/// Memory and latency are held by `Channel`, and linear models are told apart where they are made and
+/// where a worker picks the kernel of a line.
+#[test]
+fn the_feedback_and_the_kinds_of_models_have_one_place() {
+    let with = |texts: &[&str]| -> Vec<String> {
+        let holds = |path: &PathBuf| {
+            let code = code(path);
+            texts.iter().all(|text| code.contains(text))
+        };
+        let mut files: Vec<PathBuf> = sources(Path::new("src"));
+        files.retain(holds);
+        files.sort();
+        let name = |path: &PathBuf| path.to_str().unwrap().to_owned();
+        files.iter().map(name).collect()
+    };
+    let both = ["pub memory: f64,", "pub latency: f64,"];
+    assert_eq!(with(&both), ["src/model/feedback.rs"]);
+    assert_eq!(
+        with(&["Linear::Letter("]),
+        [
+            "src/sweep/cells/lines.rs",
+            "src/sweep/cells/worker.rs",
+            "src/sweep/input/linear_model.rs",
+        ]
+    );
+}
+
 /// Lines that fit beside one another on a screen.
 #[test]
 fn lines_are_within_100_columns() {
