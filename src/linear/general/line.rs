@@ -215,7 +215,7 @@ impl DelayLine {
         switch: &Switch,
         phase: Option<Angle>,
     ) -> bool {
-        let blurred = blurred(switch, phase.as_ref());
+        let blurred = blurred(resolver.system(), switch, phase.as_ref());
         self.resolved += u32::from(blurred);
         if blurred && let Some(resolved) = resolver.resolve(switch) {
             // Where only the coefficients are uncertain, P Q* itself may tell its argument better.

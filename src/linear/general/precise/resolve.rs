@@ -6,8 +6,14 @@ use super::super::system::System;
 use super::number::{Number, UNIT};
 use super::on_axis::{At, OnAxis};
 
-/// A phase is blurred where its error may be larger, and a frequency where its relative error may.
-const BLURRED: f64 = 1e-9;
+/// A phase is blurred where its error may be larger than this: in systems up to the degree of a
+/// feedback loop, and above. Bounds grow with the degree: ordinary systems of degree 8 know their
+/// phases to 1e-7, and are not to take fifty times as long.
+const BLURRED_PHASE: [f64; 2] = [1e-9, 1e-6];
+/// The highest degree of a feedback loop: friction with a state, and three lags.
+const OF_LOOPS: usize = 6;
+/// A frequency is blurred where its relative error may be larger than this.
+const BLURRED_FREQUENCY: f64 = 1e-9;
 /// Rounding errors of the gains and the slope themselves, in units of ε of what they make of F: two
 /// zeros that these may join are a touch.
 const ROUNDINGS: f64 = 16.0;
@@ -19,9 +25,10 @@ const LAST_STEP: f64 = 16.0 * UNIT;
 /// Whether the crossing at `switch` with the argument `phase` of −P Q* is known too little: the
 /// zero may be several, or the phase is uncertain, or it may be 0 as well as 2π.
 #[inline]
-pub(in super::super) fn blurred(switch: &Switch, phase: Option<&Angle>) -> bool {
-    let known = phase.is_some_and(|of| of.error <= BLURRED && is_not_0(of, switch));
-    !(known && switch.simple && switch.error <= BLURRED * switch.omega)
+pub(in super::super) fn blurred(system: &System, switch: &Switch, phase: Option<&Angle>) -> bool {
+    let allowed = BLURRED_PHASE[usize::from(system.p.degree() > OF_LOOPS)];
+    let known = phase.is_some_and(|of| of.error <= allowed && is_not_0(of, switch));
+    !(known && switch.simple && switch.error <= BLURRED_FREQUENCY * switch.omega)
 }
 
 /// Whether the argument `phase` of −P Q* is known not to be 0 at the zero near `switch`.
