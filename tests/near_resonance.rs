@@ -280,9 +280,8 @@ fn points_of_the_table() {
             roots: 1,
             line: None,
         };
-        let found = Point::at(&setting, wanted, &Stop::default())
-            .unwrap()
-            .stability;
+        let point = Point::at(&setting, wanted, &Stop::default()).unwrap();
+        let found = point.stability();
         let n = row.number("n_unstable").map(|n| n as u64);
         assert_eq!((found.n_unstable, found.marginal), (n, false), "{place}");
         assert_eq!(
@@ -291,7 +290,7 @@ fn points_of_the_table() {
             "{place}"
         );
         let expected = row.intervals("stable_delays");
-        let delays = found.stable_delays.expect("they are known");
+        let delays = found.stable_delays.as_ref().expect("they are known");
         for (ends, (from, to)) in delays.iter().zip(&expected) {
             for (end, known) in [
                 (ends[0].unwrap_or(f64::NAN), *from),

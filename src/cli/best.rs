@@ -5,33 +5,29 @@ use std::path::PathBuf;
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::explore::vc::CriticalVelocity;
-use slipmap::linear::best::SearchedGain;
 use slipmap::model::stop::Stop;
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_setting};
+use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::input::quantity::Quantity;
 use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::input::simulation::NOT_IN_MOTIONS;
+use slipmap::sweep::input::system::SystemModel;
 use slipmap::sweep::{Parameter, Setting};
 
+use super::asked::Asked;
 use super::asks::AtAnyDelay;
-use super::best_answer::BestAnswer;
-use super::best_system::{self, SystemBest};
+use super::best_answer::{Answer, BestAnswer, SystemBest};
 use super::best_text;
+use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::margins;
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say::{self, ForPeople};
 use super::setting;
-use super::system_args::SystemArgs;
+use super::system_args::{OTHERS, SystemArgs};
 use super::vc;
-
-/// All that the margins of a setting need to be asked with.
-const WANTED: Wanted = Wanted {
-    roots: 1,
-    line: None,
-};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
@@ -43,15 +39,15 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that \
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    pub(super) parameters: ParameterArgs<AtAnyDelay>,
+    parameters: ParameterArgs<AtAnyDelay>,
     #[command(flatten)]
-    pub(super) system: SystemArgs,
+    system: SystemArgs,
     /// With --system: the parameter of it that is searched beside the delay
     #[arg(long, value_name = "NAME", requires = "system")]
-    pub(super) search: Option<String>,
+    search: Option<String>,
     /// The gain that is searched; the other one is given as usual [default: velocity]
     #[arg(long, value_enum)]
-    pub(super) control: Option<Control>,
+    control: Option<Control>,
     /// Smallest gain to search, or smallest value of --search
     #[arg(
         long,
@@ -59,7 +55,7 @@ pub(super) struct Args {
         allow_hyphen_values = true,
         value_name = "A"
     )]
-    pub(super) alpha_from: Option<f64>,
+    alpha_from: Option<f64>,
     /// Largest gain to search, or largest value of --search
     #[arg(
         long,
@@ -67,25 +63,25 @@ pub(super) struct Args {
         allow_hyphen_values = true,
         value_name = "A"
     )]
-    pub(super) alpha_to: Option<f64>,
+    alpha_to: Option<f64>,
     /// Shortest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    pub(super) tau_from: Option<f64>,
+    tau_from: Option<f64>,
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    pub(super) tau_to: Option<f64>,
+    tau_to: Option<f64>,
     /// Also find the setting whose slowest decay is fastest when gain, delay and μ′ may all be off
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
-    pub(super) robust: Option<f64>,
+    robust: Option<f64>,
     /// Write the setting (the robust one with --robust), if it is stable, to a file; point and
     /// margins take it with --setting, and with a friction law vc and basin, and simulate as a case
     /// file
     #[arg(long, value_name = "SETTING.toml")]
-    pub(super) save: Option<PathBuf>,
+    save: Option<PathBuf>,
     /// One JSON object on standard output
     #[arg(long)]
-    pub(super) json: bool,
+    json: bool,
 }
 
 fn parse_spread(text: &str) -> Result<f64, String> {
@@ -95,32 +91,22 @@ fn parse_spread(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    if args.system.system.is_some() {
-        return best_system::main(args);
-    }
-    if let Some(path) = &args.save {
-        setting::check_save(path)?;
-    }
-    let gain = args.control().searched();
-    let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of \
-        the search";
-    let setting = args
-        .parameters
-        .setting_but(&[args.control().parameter(), Parameter::Tau], help)?;
-    let refused = |error: ModelError| args.parameters.refused(&error);
-    setting.sliding_point().map_err(refused)?;
-    let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
+    let (asked, searched) = match args.system.system {
+        Some(_) => args.asked_of_system()?,
+        None => args.asked_of_block()?,
+    };
+    let default = default_ranges(&asked.setting, &searched)?;
+    let ranges = args.ranges(&asked, &searched, &default)?;
     args.parameters.tell_static_friction("v_c depends on it");
-    let told = args.recommend(&setting, gain, &ranges)?;
+    let told = args.recommend(asked, searched, ranges)?;
+    let (setting, units) = (&told.asked.setting, &told.asked.units);
     if let Some(found) = &told.vc {
-        vc::warn_beyond_curve(&told.setting, found, &args.parameters.units());
+        vc::warn_beyond_curve(setting, found, units);
     }
     if args.json {
-        let inputs = args.inputs(&setting, &ranges);
-        json::print(&inputs, &BestAnswer::of(&told)?)?;
+        json::print(&args.inputs(&told), &Answer::of(&told))?;
     } else {
-        let mut out = ForPeople::begin();
-        best_text::print(&mut out, &told, &args.parameters.units())?;
+        best_text::print(&mut ForPeople::begin(), &told)?;
     }
     let Some(path) = &args.save else {
         return Ok(());
@@ -130,7 +116,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let help = "other ranges (--alpha-from, --tau-to, …) or the other --control may hold one";
         return Err(Failure::failed_with_help(message, help));
     }
-    setting::save(&told.setting, &args.parameters.units(), path)?;
+    setting::save(setting, units, path)?;
     match args.json {
         true => Ok(()),
         false => say::result(path.display()),
@@ -149,90 +135,183 @@ impl Args {
         self.control.unwrap_or(Control::Velocity)
     }
 
-    fn inputs(&self, setting: &Setting, ranges: &Ranges) -> Inputs {
-        let searched = [self.control().parameter(), Parameter::Tau];
-        let given = |parameter| !searched.contains(&parameter);
-        let inputs = Inputs::of_setting(setting, &self.parameters.units(), given);
-        let inputs = inputs.and("control", self.control());
-        let inputs = inputs.and("alpha_from", ranges.gain.0);
-        let inputs = inputs.and("alpha_to", ranges.gain.1);
-        let inputs = inputs.and("tau_from", ranges.tau.0);
-        let inputs = inputs.and("tau_to", ranges.tau.1);
-        inputs.and("robust", self.robust)
+    /// The block, and the gain that is searched.
+    fn asked_of_block(&self) -> Result<(Asked, Quantity), Failure> {
+        if let Some(path) = &self.save {
+            setting::check_save(path)?;
+        }
+        let gain = self.control().parameter();
+        let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges \
+            of the search";
+        let setting = self.parameters.setting_but(&[gain, Parameter::Tau], help)?;
+        let refused = |error: ModelError| self.parameters.refused(&error);
+        setting.sliding_point().map_err(refused)?;
+        let asked = Asked {
+            setting,
+            units: self.parameters.units(),
+            named: None,
+        };
+        Ok((asked, gain.into()))
+    }
+
+    /// The system from a file, and the parameter of it that is searched.
+    fn asked_of_system(&self) -> Result<(Asked, Quantity), Failure> {
+        let flags = self.parameters.any_but(&OTHERS);
+        alone("--system", flags || self.control.is_some())?;
+        for (flag, given) in [
+            ("--robust", self.robust.is_some()),
+            ("--save", self.save.is_some()),
+        ] {
+            if given {
+                return Err(Failure::bad_input_with_help(
+                    format!("{flag} is not known of a system from a file"),
+                    "leave it out: it is for a block on its spring",
+                ));
+            }
+        }
+        let flag = |parameter| self.parameters.given(parameter);
+        let asked = self.system.read_but_delay(flag)?;
+        let asked = asked.ok_or_else(|| Failure::bad_input("--system is not given"))?;
+        let searched = self.searched(&asked.setting)?;
+        let delay = !asked.setting.get(Parameter::Tau).is_nan();
+        let name = searched.name();
+        let known = searched.known().and_then(flag).is_some();
+        let fixed = [(delay, "tau"), (known || self.system.sets(name), name)];
+        if let Some((_, fixed)) = fixed.into_iter().find(|(given, _)| *given) {
+            return Err(Failure::bad_input_with_help(
+                format!("a value of {fixed} is given, which is searched"),
+                "leave it out; --search-from, --search-to, --tau-from and --tau-to are the \
+                 ranges of the search",
+            ));
+        }
+        Ok((asked, searched))
+    }
+
+    /// The parameter that `--search` names; where the system has one alone, that one.
+    fn searched(&self, setting: &Setting) -> Result<Quantity, Failure> {
+        let mut all = setting.system().map_or(vec![], SystemModel::quantities);
+        all.retain(|of| *of != Parameter::Tau);
+        let names: Vec<&str> = all.iter().map(Quantity::name).collect();
+        let listed = names.join(", ");
+        let found = match (&self.search, &*all) {
+            (Some(name), _) => all.iter().find(|of| of.name() == name),
+            (None, [alone]) => Some(alone),
+            (None, _) => None,
+        };
+        found.cloned().ok_or_else(|| match &self.search {
+            Some(name) => Failure::bad_input_with_help(
+                format!("--search: the system has no parameter {name}"),
+                format!("{}its parameters: {listed}", did_you_mean(name, names)),
+            ),
+            None => Failure::bad_input_with_help(
+                "--search is not given: which parameter is searched beside the delay",
+                format!("parameters of the system: {listed}"),
+            ),
+        })
+    }
+
+    /// The ranges that the flags give, over those searched by default.
+    fn ranges(
+        &self,
+        asked: &Asked,
+        searched: &Quantity,
+        default: &Ranges,
+    ) -> Result<Ranges, Failure> {
+        let check = |of: &Quantity, flag: &str, value: f64| {
+            let told = |why: String| Failure::bad_input(format!("{flag}: {why}"));
+            let checked = match of {
+                Quantity::Own(own) => own.check(value).map_err(told),
+                Quantity::Known(parameter) => {
+                    parameter.check(value).map_err(|e| match asked.named {
+                        None => Failure::out_of_range(flag, &e),
+                        Some(_) => told(e.to_string()),
+                    })
+                }
+            };
+            checked.map(drop)
+        };
+        let [from, to] = match asked.named {
+            None => ["--alpha-from", "--alpha-to"],
+            Some(_) => ["--search-from", "--search-to"],
+        };
+        Ok(Ranges {
+            gain: range(
+                [(from, self.alpha_from), (to, self.alpha_to)],
+                default.gain,
+                |flag, value| check(searched, flag, value),
+            )?,
+            tau: range(
+                [("--tau-from", self.tau_from), ("--tau-to", self.tau_to)],
+                default.tau,
+                |flag, value| check(&Parameter::Tau.into(), flag, value),
+            )?,
+        })
+    }
+
+    fn inputs(&self, told: &Recommended) -> Inputs {
+        let Ranges { gain, tau } = told.ranges;
+        let name = told.searched.name();
+        let given = |of: &str| of != name && of != Parameter::Tau.name();
+        let inputs = told.asked.inputs(given);
+        let inputs = inputs.and("tau_from", tau.0).and("tau_to", tau.1);
+        match told.asked.named {
+            None => inputs
+                .and("control", self.control())
+                .and("alpha_from", gain.0)
+                .and("alpha_to", gain.1)
+                .and("robust", self.robust),
+            Some(_) => inputs
+                .and("search", name)
+                .and("search_from", gain.0)
+                .and("search_to", gain.1),
+        }
     }
 
     fn recommend(
         &self,
-        setting: &Setting,
-        gain: SearchedGain,
-        ranges: &Ranges,
+        asked: Asked,
+        searched: Quantity,
+        ranges: Ranges,
     ) -> Result<Recommended, Failure> {
+        let (setting, stop) = (&asked.setting, Stop::default());
         let (found, robust) = match self.robust {
-            Some(spread) => robust_setting(setting, gain, ranges, spread)?,
-            None => (
-                best_settings(setting, gain, ranges, &Stop::default())?,
-                None,
-            ),
+            Some(spread) => robust_setting(setting, self.control().searched(), &ranges, spread)?,
+            None => (best_settings(setting, &searched, &ranges, &stop)?, None),
         };
-        let (gain, tau) = match &robust {
+        let (value, tau) = match &robust {
             Some(of) => (of.robust.gain, of.robust.tau),
             None => (found.overall.gain, found.overall.tau),
         };
         let mut best = setting.clone();
-        best.set(self.control().parameter(), gain);
+        best.vary(&searched, value);
         best.set(Parameter::Tau, tau);
-        let motions = !best.has_state() && best.beyond_letter(NOT_IN_MOTIONS).is_none();
-        let vc = match best.law().filter(|_| motions) {
-            Some(_) => Some(CriticalVelocity::of(
-                &best,
-                Protocol::Follow,
-                &Stop::default(),
-            )?),
-            None => None,
+        let moves = best.law().is_some() && best.check_of_letter(NOT_IN_MOTIONS, "").is_ok();
+        let vc = moves.then(|| CriticalVelocity::of(&best, Protocol::Follow, &stop));
+        let vc = vc.transpose()?;
+        // The margins of the block need one root; of a system all are told.
+        let wanted = Wanted {
+            roots: if asked.named.is_some() { 4 } else { 1 },
+            line: None,
         };
-        let point = Point::at(&best, WANTED, &Stop::default())?;
         Ok(Recommended {
-            control: self.control(),
-            ranges: *ranges,
+            point: Point::at(&best, wanted, &stop)?,
+            asked: Asked {
+                setting: best,
+                ..asked
+            },
+            searched,
+            ranges,
             spread: self.robust,
             found,
             robust,
-            unstable_roots: margins::violations(&point.stability),
-            margins: point.margins,
             vc,
-            setting: best,
         })
     }
 }
 
-/// The ranges that the flags give, over those searched by default.
-fn ranges(args: &Args, default: &Ranges) -> Result<Ranges, Failure> {
-    let check = |parameter: Parameter| {
-        move |flag: &str, value: f64| {
-            let checked = parameter.check(value);
-            checked.map_or_else(|e| Err(Failure::out_of_range(flag, &e)), |_| Ok(()))
-        }
-    };
-    Ok(Ranges {
-        gain: range(
-            [
-                ("--alpha-from", args.alpha_from),
-                ("--alpha-to", args.alpha_to),
-            ],
-            default.gain,
-            check(args.control().parameter()),
-        )?,
-        tau: range(
-            [("--tau-from", args.tau_from), ("--tau-to", args.tau_to)],
-            default.tau,
-            check(Parameter::Tau),
-        )?,
-    })
-}
-
 /// The range that two flags give, with the ends of `default` where they give none. `check` refuses
 /// the value of a flag.
-pub(super) fn range(
+fn range(
     [(from_flag, from), (to_flag, to)]: [(&str, Option<f64>); 2],
     default: (f64, f64),
     check: impl Fn(&str, f64) -> Result<(), Failure>,

@@ -2,14 +2,22 @@
 
 use serde::Serialize;
 use slipmap::explore::margins::Margins;
+use slipmap::explore::point::{Point, SystemPoint};
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::Optimum;
 use slipmap::sweep::cells::best::{BestRegion, Ranges, RobustSetting};
 use slipmap::sweep::relaxation_time;
 use utoipa::ToSchema;
 
-use super::failure::Failure;
 use super::recommended::{Control, Recommended};
+
+/// The JSON of a search.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum Answer {
+    Block(Box<BestAnswer>),
+    System(Box<SystemBest>),
+}
 
 /// The JSON of a search. Infinite numbers are written as null.
 #[derive(Debug, Serialize, ToSchema)]
@@ -32,6 +40,20 @@ pub(super) struct BestAnswer {
     /// The critical velocity of the recommended setting; null without a friction law.
     #[schema(required)]
     vc: Option<CriticalVelocity>,
+}
+
+/// The JSON of a search of a system from a file.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct SystemBest {
+    /// The parameter that is searched beside the delay.
+    search: String,
+    searched: SystemRanges,
+    best: SystemOptimum,
+    regions: Vec<SystemRegion>,
+    /// Regions that are not among these: not searched, or with decay within rounding.
+    regions_left_out: usize,
+    /// All about the best setting.
+    point: SystemPoint,
 }
 
 /// A robust setting.
@@ -72,31 +94,74 @@ impl From<&RobustSetting> for RobustOut {
     }
 }
 
-#[derive(Debug, Serialize, ToSchema)]
-struct RangesOut {
-    #[schema(value_type = [f64; 2])]
-    alpha: (f64, f64),
-    #[schema(value_type = [f64; 2])]
-    tau: (f64, f64),
+/// The types of ranges, regions and optima, where what is searched has the name `value`.
+macro_rules! of_searched {
+    ($ranges:ident, $region:ident, $optimum:ident, $(#[$about:meta])* $value:ident) => {
+        #[derive(Debug, Serialize, ToSchema)]
+        struct $ranges {
+            $(#[$about])*
+            #[schema(value_type = [f64; 2])]
+            $value: (f64, f64),
+            #[schema(value_type = [f64; 2])]
+            tau: (f64, f64),
+        }
+
+        #[derive(Debug, Serialize, ToSchema)]
+        struct $region {
+            region: $ranges,
+            #[serde(flatten)]
+            best: $optimum,
+        }
+
+        #[derive(Debug, Serialize, ToSchema)]
+        struct $optimum {
+            $(#[$about])*
+            $value: f64,
+            #[serde(flatten)]
+            numbers: OptimumNumbers,
+        }
+
+        impl From<&Ranges> for $ranges {
+            fn from(ranges: &Ranges) -> Self {
+                Self {
+                    $value: ranges.gain,
+                    tau: ranges.tau,
+                }
+            }
+        }
+
+        impl From<&BestRegion> for $region {
+            fn from(region: &BestRegion) -> Self {
+                Self {
+                    region: (&region.ranges).into(),
+                    best: (&region.best).into(),
+                }
+            }
+        }
+
+        impl From<&Optimum> for $optimum {
+            fn from(found: &Optimum) -> Self {
+                Self {
+                    $value: found.gain,
+                    numbers: found.into(),
+                }
+            }
+        }
+    };
 }
 
-#[derive(Debug, Serialize, ToSchema)]
-struct RegionOut {
-    region: RangesOut,
-    #[serde(flatten)]
-    best: OptimumOut,
-}
-
-#[derive(Debug, Serialize, ToSchema)]
-struct OptimumOut {
-    alpha: f64,
-    #[serde(flatten)]
-    numbers: OptimumNumbers,
-}
+of_searched!(RangesOut, RegionOut, OptimumOut, alpha);
+of_searched!(
+    SystemRanges,
+    SystemRegion,
+    SystemOptimum,
+    /// Of the parameter that is searched.
+    value
+);
 
 /// What is told of a best setting besides the value of what is searched.
 #[derive(Debug, Serialize, ToSchema)]
-pub(super) struct OptimumNumbers {
+struct OptimumNumbers {
     tau: f64,
     abscissa: f64,
     frequency: f64,
@@ -107,24 +172,6 @@ pub(super) struct OptimumNumbers {
     kind: &'static str,
     certified: bool,
     margin: f64,
-}
-
-impl From<&Ranges> for RangesOut {
-    fn from(ranges: &Ranges) -> Self {
-        Self {
-            alpha: ranges.gain,
-            tau: ranges.tau,
-        }
-    }
-}
-
-impl From<&Optimum> for OptimumOut {
-    fn from(found: &Optimum) -> Self {
-        Self {
-            alpha: found.gain,
-            numbers: found.into(),
-        }
-    }
 }
 
 impl From<&Optimum> for OptimumNumbers {
@@ -142,29 +189,31 @@ impl From<&Optimum> for OptimumNumbers {
     }
 }
 
-impl BestAnswer {
+impl Answer {
     /// The answer for what was found.
-    ///
-    /// # Errors
-    /// When a parameter of the setting is outside the model's range.
-    pub(super) fn of(told: &Recommended) -> Result<Self, Failure> {
-        let sliding = told.setting.sliding_point()?;
-        let region = |region: &BestRegion| RegionOut {
-            region: (&region.ranges).into(),
-            best: (&region.best).into(),
-        };
+    pub(super) fn of(told: &Recommended) -> Self {
         let found = &told.found;
-        Ok(Self {
-            mu_prime: sliding.mu_prime,
-            mu_k: sliding.mu_k,
-            control: told.control,
-            searched: (&told.ranges).into(),
-            best: (&found.overall).into(),
-            regions: found.regions.iter().map(region).collect(),
-            regions_left_out: found.regions_left_out,
-            robust: told.robust.as_ref().map(Into::into),
-            margins: told.margins.clone(),
-            vc: told.vc.clone(),
-        })
+        match &told.point {
+            Point::Block(point) => Self::Block(Box::new(BestAnswer {
+                mu_prime: point.mu_prime,
+                mu_k: point.mu_k,
+                control: Control::of(&told.searched),
+                searched: (&told.ranges).into(),
+                best: (&found.overall).into(),
+                regions: found.regions.iter().map(Into::into).collect(),
+                regions_left_out: found.regions_left_out,
+                robust: told.robust.as_ref().map(Into::into),
+                margins: point.margins.clone(),
+                vc: told.vc.clone(),
+            })),
+            Point::System(point) => Self::System(Box::new(SystemBest {
+                search: told.searched.name().to_owned(),
+                searched: (&told.ranges).into(),
+                best: (&found.overall).into(),
+                regions: found.regions.iter().map(Into::into).collect(),
+                regions_left_out: found.regions_left_out,
+                point: (**point).clone(),
+            })),
+        }
     }
 }

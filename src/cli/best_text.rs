@@ -2,24 +2,23 @@
 
 use std::io::Write;
 
+use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
 use slipmap::linear::best::Optimum;
 use slipmap::report::numbers::{counted, rounded, unit_behind};
-use slipmap::sweep::cells::best::BestSettings;
-use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter};
 
-use super::failure::Failure;
+use super::asked::Asked;
 use super::output::tell_dimensionless;
 use super::recommended::{Control, Recommended};
 use super::{margins, vc};
 
 /// A number with as many digits as a person can use.
-pub(super) fn short(value: f64) -> String {
+fn short(value: f64) -> String {
     rounded(value, 8)
 }
 
 /// What is told where nothing is stable, or where it is not known how fast anything decays.
-pub(super) fn nothing_decays(stable: bool) -> &'static str {
+fn nothing_decays(stable: bool) -> &'static str {
     match stable {
         false => "no stable setting in the ranges; the least unstable one is",
         true => "stable settings, but it is not known how fast disturbances decay; one of them is",
@@ -27,7 +26,7 @@ pub(super) fn nothing_decays(stable: bool) -> &'static str {
 }
 
 /// An abscissa in words.
-pub(super) fn abscissa_of(best: &Optimum, unit: &str) -> String {
+fn abscissa_of(best: &Optimum, unit: &str) -> String {
     match best.abscissa.is_finite() {
         true => format!("{}{unit}", short(best.abscissa)),
         false => "not known".into(),
@@ -36,42 +35,57 @@ pub(super) fn abscissa_of(best: &Optimum, unit: &str) -> String {
 
 /// The lowest frequency of an optimum in words; "none" where its roots have none, because they
 /// accumulate.
-pub(super) fn frequency_of(best: &Optimum, unit: &str) -> String {
+fn frequency_of(best: &Optimum, unit: &str) -> String {
     match best.frequencies.is_empty() {
         true => "none".into(),
         false => format!("{}{unit}", short(best.frequency())),
     }
 }
 
-pub(super) fn print(
-    out: &mut impl Write,
-    told: &Recommended,
-    units: &Units,
-) -> Result<(), Failure> {
-    let (setting, found, ranges) = (&told.setting, &told.found, &told.ranges);
+fn yes_or_no(certified: bool) -> &'static str {
+    if certified { "yes" } else { "no" }
+}
+
+impl Recommended {
+    /// The unit of what is searched, behind a number; a system's own parameter is told without.
+    fn unit_of_searched(&self) -> String {
+        let known = self.searched.known();
+        known.map_or_else(String::new, |p| {
+            unit_behind(&self.asked.units.of_parameter(p))
+        })
+    }
+}
+
+/// Prints what was found for people.
+pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
+    let Recommended {
+        asked,
+        searched,
+        found,
+        ranges,
+        ..
+    } = told;
+    let units = &asked.units;
     if let Some(spread) = told.spread {
-        print_robust(out, spread, told, units)?;
+        print_robust(out, spread, told)?;
     }
     let best = &found.overall;
     let time = unit_behind(&units.time());
-    match best.relaxation_time() {
-        Some(relaxation) => writeln!(
-            out,
-            "sliding relaxes fastest, with the relaxation time {}{time}, at",
-            short(relaxation)
-        )?,
-        None => writeln!(out, "{}", nothing_decays(!found.regions.is_empty()))?,
+    let subject = asked.subject("sliding");
+    if let Some(relaxation) = best.relaxation_time().map(short) {
+        let relaxes = "relaxes fastest, with the relaxation time";
+        writeln!(out, "{subject} {relaxes} {relaxation}{time}, at")?;
+    } else {
+        let has = match &told.point {
+            Point::Block(_) => String::new(),
+            Point::System(_) => format!("{subject} has "),
+        };
+        writeln!(out, "{has}{}", nothing_decays(!found.regions.is_empty()))?;
     }
-    let (searched, other) = match told.control {
-        Control::Velocity => (Parameter::AlphaV, Parameter::AlphaN),
-        Control::Load => (Parameter::AlphaN, Parameter::AlphaV),
-    };
-    let sliding = setting.sliding_point()?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let of = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
-    let with = |parameter: Parameter, value: f64| format!("{}{}", short(value), of(parameter));
-    row(searched.name(), with(searched, best.gain))?;
-    row("tau", with(Parameter::Tau, best.tau))?;
+    let gain = told.unit_of_searched();
+    row(searched.name(), short(best.gain) + &gain)?;
+    row("tau", short(best.tau) + &time)?;
     let unit = |field: Field| unit_behind(&field.unit(units));
     row(
         Field::Abscissa.name(),
@@ -82,46 +96,82 @@ pub(super) fn print(
         frequency_of(best, &unit(Field::Frequency)),
     )?;
     row("kind", best.kind.name().into())?;
-    row(
-        "certified",
-        if best.certified { "yes" } else { "no" }.into(),
-    )?;
-    row("mu_prime", with(Parameter::MuPrime, sliding.mu_prime))?;
-    row("mu_k", short(sliding.mu_k))?;
-    row(other.name(), with(other, setting.get(other)))?;
+    row("certified", yes_or_no(best.certified).into())?;
+    match &told.point {
+        Point::Block(point) => print_block(point, told, &mut row)?,
+        Point::System(point) => print_system(point, searched.name(), &mut row)?,
+    }
     let range = |(from, to): (f64, f64), unit: &str| {
         format!("{}{unit} to {}{unit}", short(from), short(to))
     };
-    row(
-        "searched",
-        format!(
-            "{} {}, tau {}",
-            searched.name(),
-            range(ranges.gain, &of(searched)),
-            range(ranges.tau, &time)
-        ),
-    )?;
+    let (of_gain, of_tau) = (range(ranges.gain, &gain), range(ranges.tau, &time));
+    let text = format!("{} {of_gain}, tau {of_tau}", searched.name());
+    row("searched", text)?;
+    let Point::Block(point) = &told.point else {
+        return print_regions(out, told);
+    };
     tell_dimensionless(out, units)?;
-    print_regions_of(out, searched, found, units)?;
-    print_recommended(out, told, units)
+    print_regions(out, told)?;
+    print_recommended(out, told, point)
+}
+
+/// What is told of the block besides its optimum.
+fn print_block(
+    point: &BlockPoint,
+    told: &Recommended,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let units = &told.asked.units;
+    let with = |parameter: Parameter, value: f64| {
+        format!(
+            "{}{}",
+            short(value),
+            unit_behind(&units.of_parameter(parameter))
+        )
+    };
+    row("mu_prime", with(Parameter::MuPrime, point.mu_prime))?;
+    row("mu_k", short(point.mu_k))?;
+    let (other, value) = match Control::of(&told.searched) {
+        Control::Velocity => (Parameter::AlphaN, point.alpha_n),
+        Control::Load => (Parameter::AlphaV, point.alpha_v),
+    };
+    row(other.name(), with(other, value))
+}
+
+/// What is told of a system from a file besides its optimum.
+fn print_system(
+    point: &SystemPoint,
+    searched: &str,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let own = point.parameters.iter();
+    let own = own.map(|(name, value)| (&**name, Some(*value)));
+    for (name, value) in own.chain([("memory", point.memory), ("latency", point.latency)]) {
+        if let Some(value) = value.filter(|_| name != searched) {
+            row(name, short(value))?;
+        }
+    }
+    if let Some(margin) = point.stability.delay_margin {
+        row("delay_margin", short(margin))?;
+    }
+    if point.memory.is_none() {
+        return Ok(());
+    }
+    let margin = point.latency_margin.map(short);
+    let margin = margin.unwrap_or_else(|| "infinite, or not known".into());
+    row("latency_margin", margin)
 }
 
 /// The robust setting, beside what the best one is worth within the same spread.
-fn print_robust(
-    out: &mut impl Write,
-    spread: f64,
-    told: &Recommended,
-    units: &Units,
-) -> Result<(), Failure> {
+fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::io::Result<()> {
     let percent = 100.0 * spread;
     let Some(of) = &told.robust else {
         let none = "no setting found in the ranges stays stable when gain, delay and mu_prime may \
                     each be off by";
-        return Ok(writeln!(out, "{none} {percent} %")?);
+        return writeln!(out, "{none} {percent} %");
     };
-    let unit = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
-    let rate = unit_behind(&units.rate());
-    let searched = told.control.parameter();
+    let units = &told.asked.units;
+    let (rate, time) = (unit_behind(&units.rate()), unit_behind(&units.time()));
     let lost = |worst: f64, abscissa: f64| match worst < 0.0 {
         true => format!("{:.1} % slower", 100.0 * (1.0 - worst / abscissa)),
         false => "unstable".into(),
@@ -133,13 +183,10 @@ fn print_robust(
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let found = &of.robust;
     row(
-        searched.name(),
-        format!("{}{}", short(found.gain), unit(searched)),
+        told.searched.name(),
+        short(found.gain) + &told.unit_of_searched(),
     )?;
-    row(
-        "tau",
-        format!("{}{}", short(found.tau), unit(Parameter::Tau)),
-    )?;
+    row("tau", short(found.tau) + &time)?;
     row("abscissa", format!("{}{rate}", short(found.abscissa)))?;
     let worst = format!(
         "{}{rate} within the spread, {}",
@@ -147,67 +194,42 @@ fn print_robust(
         lost(found.worst_abscissa, found.abscissa)
     );
     row("worst_abscissa", worst)?;
-    row(
-        "certified",
-        if found.certified { "yes" } else { "no" }.into(),
-    )?;
+    row("certified", yes_or_no(found.certified).into())?;
     let (worst, _) = of.worst_of_best;
     let of_best = format!(
         "{}{rate} within the spread, {}",
         short(worst),
         lost(worst, told.found.overall.abscissa)
     );
-    row("best setting", of_best)?;
-    Ok(())
+    row("best setting", of_best)
 }
 
 /// Margins of the setting that is recommended, and v_c where there is a friction law.
 fn print_recommended(
     out: &mut impl Write,
     told: &Recommended,
-    units: &Units,
-) -> Result<(), Failure> {
+    point: &BlockPoint,
+) -> std::io::Result<()> {
     let which = if told.robust.is_some() {
         "robust"
     } else {
         "best"
     };
     writeln!(out, "at the {which} setting")?;
-    let found = (&told.margins, told.unstable_roots);
-    margins::print(out, found, &told.setting, units)?;
+    let Asked { setting, units, .. } = &told.asked;
+    let found = (&point.margins, margins::violations(&point.stability));
+    margins::print(out, found, setting, units)?;
     match &told.vc {
         Some(found) => vc::print_short(out, found, units),
         None => Ok(()),
     }
 }
 
-/// One line for each stable region of the block on its spring, with units where there are any.
-fn print_regions_of(
-    out: &mut impl Write,
-    searched: Parameter,
-    found: &BestSettings,
-    units: &Units,
-) -> std::io::Result<()> {
+/// One line for each stable region, with its best setting; nothing without regions. The columns
+/// have units where there are any.
+fn print_regions(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
+    let (units, found) = (&told.asked.units, &told.found);
     let optima = found.regions.iter().map(|region| &region.best);
-    let (gain, tau) = (units.of_parameter(searched), units.time());
-    let columns = [&*gain, &*tau, &*tau, &*units.angular_frequency(), "", ""];
-    let columns = (!units.dimensionless()).then_some(columns);
-    print_regions(
-        out,
-        (searched.name(), columns),
-        optima,
-        found.regions_left_out,
-    )
-}
-
-/// One line for each stable region, with its best setting; nothing without regions. What is
-/// searched beside the delay has a name, and the columns have units where there are any.
-pub(super) fn print_regions<'o>(
-    out: &mut impl Write,
-    (name, units): (&str, Option<[&str; 6]>),
-    optima: impl Iterator<Item = &'o Optimum>,
-    left_out: usize,
-) -> std::io::Result<()> {
     let mut optima = optima.peekable();
     if optima.peek().is_none() {
         return Ok(());
@@ -220,14 +242,17 @@ pub(super) fn print_regions<'o>(
         writeln!(out, "{}", text.trim_end())
     };
     line([
-        name,
+        told.searched.name(),
         "tau",
         "relaxation_time",
         "frequency",
         "certified",
         "kind",
     ])?;
-    units.map_or(Ok(()), &mut line)?;
+    if !units.dimensionless() {
+        let (gain, tau) = (told.searched.unit(units), units.time());
+        line([&gain, &tau, &tau, &units.angular_frequency(), "", ""])?;
+    }
     for best in optima {
         let time = best.relaxation_time().map_or("none".into(), short);
         line([
@@ -235,11 +260,11 @@ pub(super) fn print_regions<'o>(
             &short(best.tau),
             &time,
             &frequency_of(best, ""),
-            if best.certified { "yes" } else { "no" },
+            yes_or_no(best.certified),
             best.kind.name(),
         ])?;
     }
-    match left_out {
+    match found.regions_left_out {
         0 => Ok(()),
         more => writeln!(
             out,

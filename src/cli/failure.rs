@@ -6,6 +6,7 @@ use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
+use slipmap::sweep::input::linear_model::NoAnswer;
 
 use super::excerpt::excerpt;
 use super::kind::Kind;
@@ -138,6 +139,12 @@ impl From<StoreError> for Failure {
 
 impl From<ModelError> for Failure {
     fn from(error: ModelError) -> Self {
+        Self::bad_input(error.to_string())
+    }
+}
+
+impl From<NoAnswer> for Failure {
+    fn from(error: NoAnswer) -> Self {
         Self::bad_input(error.to_string())
     }
 }

@@ -12,7 +12,7 @@ use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
 
 use super::failure::Failure;
-use super::json::{self, AnswerSchema, Inputs};
+use super::json::{self, AnswerSchema};
 use super::output::tell_dimensionless;
 use super::point_args::PointArgs;
 use super::say::ForPeople;
@@ -45,8 +45,9 @@ pub(super) fn described() -> AnswerSchema {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let (setting, units) = args.point.read()?;
-    if setting.has_state() {
+    let asked = args.point.read()?;
+    let setting = &asked.setting;
+    let Some(margins) = Margins::at(setting, args.decay, &Stop::default())? else {
         let law = setting.law().map_or("", |law| law.name());
         return Err(Failure::bad_input_with_help(
             format!(
@@ -54,10 +55,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             ),
             "slipmap point gives its delay margin and, with --json, its latency margin",
         ));
-    }
-    let margins = Margins::at(&setting, args.decay, &Stop::default())?;
+    };
     if args.json {
-        let inputs = Inputs::of_setting(&setting, &units, |_| true).and("decay", args.decay);
+        let inputs = asked.inputs(|_| true).and("decay", args.decay);
         return json::print(&inputs, &margins);
     }
     let wanted = Wanted {
@@ -66,10 +66,15 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let violations = match margins.decays {
         true => None,
-        false => violations(&Point::at(&setting, wanted, &Stop::default())?.stability),
+        false => violations(Point::at(setting, wanted, &Stop::default())?.stability()),
     };
     let mut out = ForPeople::begin();
-    Ok(print(&mut out, (&margins, violations), &setting, &units)?)
+    Ok(print(
+        &mut out,
+        (&margins, violations),
+        setting,
+        &asked.units,
+    )?)
 }
 
 /// The number of roots on the wrong side: of the line, where one is asked for, else of the

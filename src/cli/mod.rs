@@ -1,12 +1,12 @@
 //! The command line: one file per subcommand, each thin.
 //!
 //! - `address_space`: limits on memory that the system sets
+//! - `asked`: the setting that a command is asked about: of the block, or of a system from a file
 //! - `asks`: the needs of commands that ask about a point, which determine their flags
 //! - `axis_facts`: the facts of an axis, for a sweep and for a map
 //! - `basin`: `slipmap basin`: its starts and its output
 //! - `best`: `slipmap best`
 //! - `best_answer`: the output of `slipmap best` with `--json`
-//! - `best_system`: `slipmap best --system`
 //! - `best_text`: the output of `slipmap best` for people
 //! - `case_facts`: the facts of a case, before it is simulated and from its trace
 //! - `cell`: a cell of a map instead of flags or a case file
@@ -34,7 +34,7 @@
 //! - `plot`: `slipmap plot`
 //! - `point`: `slipmap point`
 //! - `point_args`: the arguments for a point of sliding
-//! - `point_system`: `slipmap point --system`
+//! - `point_text`: the output of `slipmap point` for people
 //! - `read_map`: `slipmap read-map`
 //! - `recommended`: the setting that `slipmap best` recommends
 //! - `reference`: `slipmap reference`
@@ -56,12 +56,12 @@
 //! - `verify`: `slipmap verify`
 
 mod address_space;
+mod asked;
 mod asks;
 mod axis_facts;
 mod basin;
 mod best;
 mod best_answer;
-mod best_system;
 mod best_text;
 mod case_facts;
 mod cell;
@@ -89,7 +89,7 @@ mod plan_case;
 mod plot;
 mod point;
 mod point_args;
-mod point_system;
+mod point_text;
 mod read_map;
 mod recommended;
 mod reference;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use slipmap::sweep::Parameter;
 use slipmap::sweep::input::point_file::PointOf;
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Parameter, Setting};
 
+use super::asked::Asked;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
@@ -27,13 +27,14 @@ impl PointArgs {
         self.cell.map.as_deref()
     }
 
-    /// The setting of the cell of a map, if the map is of a system from a file.
-    pub(super) fn cell_of_system(&self) -> Result<Option<Setting>, Failure> {
-        let setting = self.cell.of_system()?;
-        if setting.is_some() {
-            alone("--map", self.parameters.any_but(&[]))?;
-        }
-        Ok(setting)
+    /// The cell of a map, if the map is of a system from a file.
+    pub(super) fn cell_of_system(&self) -> Result<Option<Asked>, Failure> {
+        let (Some(setting), Some(map)) = (self.cell.of_system()?, self.map()) else {
+            return Ok(None);
+        };
+        alone("--map", self.parameters.any_but(&[]))?;
+        let map = map.display().to_string();
+        Ok(Some(Asked::of_system(setting, "map", map)))
     }
 
     /// The value of the flag of a parameter.
@@ -48,17 +49,22 @@ impl PointArgs {
         alone(with, others || self.parameters.any_but(but))
     }
 
-    /// The setting, from a file, a map or flags, and its units.
-    pub(super) fn read(&self) -> Result<(Setting, Units), Failure> {
+    /// The setting of the block, from a file, a map or flags.
+    pub(super) fn read(&self) -> Result<Asked, Failure> {
         let given = self.parameters.any_but(&[]);
+        let block = |setting, units| Asked {
+            setting,
+            units,
+            named: None,
+        };
         if let Some(point) = self.file.point(PointOf::Sliding)? {
             alone("--setting", given)?;
-            return Ok((point.setting, point.units));
+            return Ok(block(point.setting, point.units));
         }
         if let Some(point) = self.cell.point(PointOf::Sliding)? {
             alone("--map", given)?;
-            return Ok((point.setting, point.units));
+            return Ok(block(point.setting, point.units));
         }
-        Ok((self.parameters.setting()?, self.parameters.units()))
+        Ok(block(self.parameters.setting()?, self.parameters.units()))
     }
 }

@@ -2,12 +2,15 @@
 
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::explore::margins::Margins;
+use slipmap::explore::point::Point;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::SearchedGain;
+use slipmap::sweep::Parameter;
 use slipmap::sweep::cells::best::{BestSettings, Ranges, RobustSetting};
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::sweep::input::quantity::Quantity;
 use utoipa::ToSchema;
+
+use super::asked::Asked;
 
 /// Controls by name.
 #[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
@@ -19,21 +22,20 @@ pub(super) enum Control {
     Load,
 }
 
-/// The best settings, with the margins and v_c of the recommended one.
+/// The best settings, with all about the recommended one.
 pub(super) struct Recommended {
-    pub(super) control: Control,
+    /// The recommended setting: the robust one, if there is one.
+    pub(super) asked: Asked,
+    /// What is searched beside the delay.
+    pub(super) searched: Quantity,
     pub(super) ranges: Ranges,
     /// The largest relative error of gain, delay and μ′, if requested.
     pub(super) spread: Option<f64>,
     pub(super) found: BestSettings,
     /// None if it is not requested, or no setting stays stable.
     pub(super) robust: Option<RobustSetting>,
-    /// The recommended setting: the robust one, if there is one.
-    pub(super) setting: Setting,
-    pub(super) margins: Margins,
-    /// The number of unstable roots of the recommended setting; none where it is stable, or where
-    /// that is not known.
-    pub(super) unstable_roots: Option<u64>,
+    /// The recommended setting, with its margins.
+    pub(super) point: Point,
     /// v_c, if there is a friction law.
     pub(super) vc: Option<CriticalVelocity>,
 }
@@ -43,6 +45,14 @@ impl Control {
         match self {
             Self::Velocity => Parameter::AlphaV,
             Self::Load => Parameter::AlphaN,
+        }
+    }
+
+    /// The control whose gain is searched.
+    pub(super) fn of(searched: &Quantity) -> Self {
+        match *searched == Parameter::AlphaN {
+            true => Self::Load,
+            false => Self::Velocity,
         }
     }
 

@@ -2,13 +2,15 @@
 //! FILE|NAME --set NAME=VALUE`.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use slipmap::model::Shown;
-use slipmap::sweep::Parameter;
 use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::input::system::shipped;
-use slipmap::sweep::input::system::{Evaluation, SystemModel};
+use slipmap::sweep::input::quantity::Quantity;
+use slipmap::sweep::input::system::{SystemModel, shipped};
+use slipmap::sweep::{Parameter, Setting};
 
+use super::asked::Asked;
 use super::failure::Failure;
 use super::sweep_file::read_system;
 
@@ -61,22 +63,19 @@ pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
 pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
 
 impl SystemArgs {
-    /// The system and its setting; none without a system. `flag` gives the value of the flag for
-    /// one of [`OTHERS`].
+    /// The system at its setting; none without a system. `flag` gives the value of the flag for one
+    /// of [`OTHERS`].
     pub(super) fn read(
         &self,
         flag: impl Fn(Parameter) -> Option<f64>,
-    ) -> Result<Option<(SystemModel, Evaluation)>, Failure> {
+    ) -> Result<Option<Asked>, Failure> {
+        let tau = Parameter::Tau;
         match self.read_but_delay(flag)? {
-            Some((_, _, false)) => Err(Failure::bad_input_with_help(
+            Some(asked) if asked.setting.get(tau).is_nan() => Err(Failure::bad_input_with_help(
                 "--tau is not given",
-                format!(
-                    "--tau: {}, {}",
-                    Parameter::Tau.long_name(),
-                    Parameter::Tau.allowed()
-                ),
+                format!("--tau: {}, {}", tau.long_name(), tau.allowed()),
             )),
-            found => Ok(found.map(|(model, at, _)| (model, at))),
+            found => Ok(found),
         }
     }
 
@@ -85,29 +84,30 @@ impl SystemArgs {
         self.set.iter().any(|set| set.name == name)
     }
 
-    /// As [`SystemArgs::read`], and whether a delay is given; it need not be.
+    /// As [`SystemArgs::read`], but the delay need not be given; it is NaN then.
     pub(super) fn read_but_delay(
         &self,
         flag: impl Fn(Parameter) -> Option<f64>,
-    ) -> Result<Option<(SystemModel, Evaluation, bool)>, Failure> {
+    ) -> Result<Option<Asked>, Failure> {
         let Some(named) = &self.system else {
             return Ok(None);
         };
-        let model = system_of(named)?;
-        let mut at = model.defaults();
+        let model = Arc::new(system_of(named)?);
+        let mut setting = Setting::of_system(Arc::clone(&model));
         let mut others = OTHERS.map(flag);
         for (i, set) in self.set.iter().enumerate() {
             if self.set[..i].iter().any(|before| before.name == set.name) {
                 return Err(given_twice(&set.name));
             }
+            let own = model.parameters.iter().find(|own| own.name == set.name);
             let other = OTHERS.into_iter().position(|p| p.name() == set.name);
-            match (model.index_of(&set.name), other) {
-                (Some(index), _) => {
-                    let checked = model.parameters[index].check(set.value);
-                    at.own[index] = checked.map_err(|why| {
+            match (own, other) {
+                (Some(own), _) => {
+                    let value = own.check(set.value).map_err(|why| {
                         let value = Shown(set.value);
                         Failure::bad_input(format!("--set {}={value}: {why}", set.name))
                     })?;
+                    setting.vary(&Quantity::Own(Arc::clone(own)), value);
                 }
                 (None, Some(other)) if others[other].is_some() => {
                     return Err(given_twice(&set.name));
@@ -119,7 +119,7 @@ impl SystemArgs {
         for (parameter, value) in OTHERS.into_iter().zip(others) {
             let Some(value) = value else { continue };
             let name = parameter.name();
-            if parameter != Parameter::Tau && !model.is_feedback() {
+            if !setting.others().contains(&parameter) {
                 return Err(Failure::bad_input_with_help(
                     format!("this system has no {name}"),
                     "a system of B and A has memory and latency, one of P and Q has not",
@@ -127,13 +127,9 @@ impl SystemArgs {
             }
             let checked = parameter.check(value);
             let value = checked.map_err(|e| Failure::out_of_range(&format!("--{name}"), &e))?;
-            match parameter {
-                Parameter::Memory => at.channel.memory = value,
-                Parameter::Latency => at.channel.latency = value,
-                _ => at.tau = value,
-            }
+            setting.set(parameter, value);
         }
-        Ok(Some((model, at, others[0].is_some())))
+        Ok(Some(Asked::of_system(setting, "system", named.clone())))
     }
 }
 
@@ -142,11 +138,8 @@ fn given_twice(name: &str) -> Failure {
 }
 
 fn unknown(name: &str, model: &SystemModel) -> Failure {
-    let others = OTHERS
-        .into_iter()
-        .filter(|p| *p == Parameter::Tau || model.is_feedback());
-    let mut known: Vec<&str> = model.parameters.iter().map(|own| &*own.name).collect();
-    known.extend(others.map(|other| -> &str { other.name() }));
+    let quantities = model.quantities();
+    let known: Vec<&str> = quantities.iter().map(Quantity::name).collect();
     let meant = did_you_mean(name, known.iter().copied());
     Failure::bad_input_with_help(
         format!("--set: the system has no parameter {name}"),

@@ -149,7 +149,7 @@ pub(super) fn print_short(
     out: &mut impl Write,
     found: &CriticalVelocity,
     units: &Units,
-) -> Result<(), Failure> {
+) -> std::io::Result<()> {
     let unit = unit_behind(&Field::Vc.unit(units));
     let vc = match (not_known(found, units), found.vc) {
         (Some(text), _) => text,

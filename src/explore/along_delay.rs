@@ -7,8 +7,8 @@ use crate::linear::MarginalTolerance;
 use crate::linear::crossing::Crossing;
 use crate::linear::line::Line;
 use crate::linear::stable_delays::StableInterval;
-use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::sweep::input::linear_model::NoAnswer;
 use crate::sweep::{Parameter, Setting};
 
 /// The line reaches at least to the end of this many stable intervals. Near a tangency there can be
@@ -39,8 +39,8 @@ impl AlongDelay {
     /// The line of a setting with all its parameters.
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn of(setting: &Setting) -> Result<Self, ModelError> {
+    /// When a parameter is outside the model's range, or an expression has no value.
+    pub fn of(setting: &Setting) -> Result<Self, NoAnswer> {
         let (model, time_unit) = setting.linear()?;
         let line = model.roots(&Stop::default()).line(time_unit);
         Ok(Self::of_line(&*line, setting.get(Parameter::Tau)))

@@ -122,30 +122,33 @@ pub struct StabilityBox {
 }
 
 impl Margins {
-    /// The margins of a setting with all its parameters, for a required decay rate of `decay` ≥ 0.
-    /// Once `stop` is set, the answer comes soon but is meaningless.
+    /// The margins of a setting with all its parameters, for a required decay rate of `decay` ≥ 0;
+    /// none of a system from a file and of friction with a state. Once `stop` is set, the answer
+    /// comes soon but is meaningless.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Self, ModelError> {
-        let around = Around::of(setting, decay)?.heeding(stop);
+    pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Option<Self>, ModelError> {
+        let Some(around) = Around::of(setting, decay)? else {
+            return Ok(None);
+        };
+        let around = around.heeding(stop);
         let mut margins = Self {
             decays: around.stable(),
             ..Self::lost(decay)
         };
         if margins.decays {
             margins.fill(&around, setting);
-        } else if around.beyond_letter() {
+        } else if around.is_beyond() {
             // That counts from no latency at all, whatever holds at the setting's own.
             let latency = around.latency(&mut Search::default());
             margins.note("latency_margin", &[latency]);
             margins.latency_margin = finite(latency);
         }
-        Ok(margins)
+        Ok(Some(margins))
     }
 
-    /// Of a system from a file and of friction with a state, as far as stability over the delay
-    /// tells: at the delay `tau`.
+    /// Of friction with a state, as far as stability over the delay tells: at the delay `tau`.
     #[must_use]
     pub fn of_stability(stability: &Stability, tau: f64) -> Self {
         let mut margins = Self {

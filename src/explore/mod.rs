@@ -3,9 +3,9 @@
 //!
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
-//! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
-//!   [`stable_line`]: its stable delays and latencies; [`along_delay`]: over its delays
-//! - [`system_point`]: the same for a system from a file
+//! - [`point`]: linear stability at a point of the block or of a system from a file, with its
+//!   roots: [`stability`] of its linear model; [`stable_line`]: its stable delays and latencies;
+//!   [`along_delay`]: over its delays
 //! - [`margin_kind`]: whether a distance to a change of stability is finite, infinite or unknown
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
@@ -38,7 +38,6 @@ pub mod point;
 pub mod problem;
 pub mod stability;
 pub mod stable_line;
-pub mod system_point;
 pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]
 pub mod wasm;

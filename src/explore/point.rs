@@ -1,18 +1,34 @@
-//! Linear stability of continuous sliding at a point of parameter space.
+//! Linear stability at a point of parameter space: of continuous sliding of the block, or of a
+//! system from a file.
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use super::finite;
+use super::margin_kind::MarginKind;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::sweep::input::linear_model::NoAnswer;
+use crate::sweep::input::system::SystemModel;
 use crate::sweep::{Parameter, Setting};
+
+/// Linear stability at a point.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Point {
+    /// Of the block on its spring.
+    Block(Box<BlockPoint>),
+    /// Of a system from a file.
+    System(Box<SystemPoint>),
+}
 
 /// Linear stability at a point, in the units of its setting.
 #[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct Point {
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema), schema(as = Point))]
+pub struct BlockPoint {
     /// μ_K′(v0).
     pub mu_prime: f64,
     /// μ_K(v0).
@@ -36,21 +52,66 @@ pub struct Point {
     pub margins: Margins,
 }
 
+/// Linear stability of a system at a point.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct SystemPoint {
+    /// What the system is, by its file; may be empty.
+    pub system: String,
+    /// Its own parameters by their names.
+    pub parameters: BTreeMap<String, f64>,
+    /// τ.
+    pub tau: f64,
+    /// R; null for P and Q, which have no memory.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub memory: Option<f64>,
+    /// δ; null for P and Q, which have no latency.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub latency: Option<f64>,
+    /// Whether all delays are covered. They are not where P or Q depends on the delay: then only
+    /// `n_unstable` and the roots are given, and all values about other delays are null.
+    pub line_of_delays: bool,
+    /// The largest latency of the feedback, counted from none, at which the setting stays stable; 0
+    /// where it is unstable without latency. Null where it is infinite or unknown, and for P and Q,
+    /// which have no latency.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub latency_margin: Option<f64>,
+    /// Its stability, with its roots.
+    #[serde(flatten)]
+    pub stability: Stability,
+}
+
 impl Point {
-    /// Linear stability of a setting with all its parameters. Once `stop` is set, the answer comes
+    /// Linear stability at a setting with all its parameters. Once `stop` is set, the answer comes
     /// soon but is meaningless.
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn at(setting: &Setting, wanted: Wanted, stop: &Stop) -> Result<Self, ModelError> {
-        let sliding = setting.sliding_point()?;
-        let (model, time_unit) = setting.linear()?;
+    /// When a parameter is outside the model's range, or nothing is known of such a model.
+    pub fn at(setting: &Setting, wanted: Wanted, stop: &Stop) -> Result<Self, NoAnswer> {
+        let (model, time_unit) = setting.answered()?;
         let tau = setting.get(Parameter::Tau);
         let stability = Stability::of(&model, (time_unit, tau), wanted, stop);
-        let margins = match setting.has_state() {
-            true => Margins::of_stability(&stability, tau),
-            false => Margins::at(setting, 0.0, stop)?,
-        };
+        Ok(match setting.system() {
+            Some(model) => Self::System(Box::new(SystemPoint::of(setting, model, stability))),
+            None => Self::Block(Box::new(BlockPoint::of(setting, stability, stop)?)),
+        })
+    }
+
+    /// Its stability, with its roots.
+    #[must_use]
+    pub fn stability(&self) -> &Stability {
+        match self {
+            Self::Block(point) => &point.stability,
+            Self::System(point) => &point.stability,
+        }
+    }
+}
+
+impl BlockPoint {
+    fn of(setting: &Setting, stability: Stability, stop: &Stop) -> Result<Self, ModelError> {
+        let sliding = setting.sliding_point()?;
+        let margins = Margins::at(setting, 0.0, stop)?;
+        let tau = setting.get(Parameter::Tau);
         Ok(Self {
             mu_prime: sliding.mu_prime,
             mu_k: sliding.mu_k,
@@ -58,8 +119,44 @@ impl Point {
             alpha_n: setting.get(Parameter::AlphaN),
             tau,
             stiffness_ratio: setting.stiffness_ratio().and_then(finite),
+            margins: margins.unwrap_or_else(|| Margins::of_stability(&stability, tau)),
             stability,
-            margins,
         })
     }
+}
+
+impl SystemPoint {
+    fn of(setting: &Setting, model: &SystemModel, mut stability: Stability) -> Self {
+        let line_of_delays = !model.depends_on_delay();
+        if !line_of_delays {
+            forget_other_delays(&mut stability);
+        }
+        let of_feedback = |parameter| model.is_feedback().then(|| setting.get(parameter));
+        Self {
+            system: model.title.clone(),
+            parameters: setting
+                .own()
+                .map(|(own, value)| (own.name.clone(), value))
+                .collect(),
+            tau: setting.get(Parameter::Tau),
+            memory: of_feedback(Parameter::Memory),
+            latency: of_feedback(Parameter::Latency),
+            line_of_delays,
+            latency_margin: stability.latencies.margin.and_then(finite),
+            stability,
+        }
+    }
+}
+
+/// Keeps what holds at the delay itself: at other delays P and Q differ.
+fn forget_other_delays(stability: &mut Stability) {
+    stability.stable_delays = None;
+    stability.stable_delays_truncated = false;
+    stability.delay_margin = None;
+    stability.delay_margin_kind = MarginKind::Unknown;
+    stability.delay_margin_sign = 0;
+    stability.n_at_zero_delay = None;
+    stability.first_crossing = None;
+    stability.first_change = None;
+    stability.crossings = None;
 }

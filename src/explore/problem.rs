@@ -6,6 +6,7 @@ use super::chart::ChartError;
 use super::motion::MotionError;
 use crate::model::ModelError;
 use crate::sweep::SpecError;
+use crate::sweep::input::linear_model::NoAnswer;
 
 /// Why there is no answer; determines the HTTP status and its usual title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,6 +93,12 @@ impl From<SpecError> for Problem {
 
 impl From<ModelError> for Problem {
     fn from(error: ModelError) -> Self {
+        Self::new(Why::Unprocessable, error.to_string())
+    }
+}
+
+impl From<NoAnswer> for Problem {
+    fn from(error: NoAnswer) -> Self {
         Self::new(Why::Unprocessable, error.to_string())
     }
 }

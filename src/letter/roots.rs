@@ -13,6 +13,7 @@ use crate::linear::spectrum::RootFinder;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
 use crate::sweep::cells::best::{best_settings, default_ranges};
+use crate::sweep::input::best_plane::parameter_of;
 use crate::sweep::{Parameter, Setting};
 
 /// Numbers of settings for the claims on unstable roots, points of a Halton sequence, which fills
@@ -241,8 +242,10 @@ impl Relaxation {
                 shop.step(&format!("the fastest decay under {control} at {mu_prime}"))?;
                 let mut setting = Setting::new(None);
                 setting.set(Parameter::MuPrime, mu_prime);
-                let ranges = default_ranges(&setting, gain)?;
-                let found = best_settings(&setting, gain, &ranges, &shop.stop())?;
+                let searched = parameter_of(gain).into();
+                let ranges = default_ranges(&setting, &searched)?;
+                let found = best_settings(&setting, &searched, &ranges, &shop.stop())
+                    .map_err(crate::model::ModelError::from)?;
                 for (what, positive) in names(gain) {
                     let same = found.regions.iter().map(|region| &region.best);
                     let same = same.filter(|best| (best.gain > 0.0) == positive);

@@ -14,7 +14,7 @@ use super::work::Pace;
 use crate::explore::answer::WithCommand;
 use crate::explore::known::Known;
 use crate::explore::law::LawCurve;
-use crate::explore::point::Point;
+use crate::explore::point::BlockPoint;
 use crate::explore::vc::CriticalVelocity;
 use crate::explore::{self, Asked, Limits};
 
@@ -119,7 +119,7 @@ async fn chart(
         example = json!(examples::POINT),
     ),
     responses(
-        (status = 200, description = "The point", body = WithCommand<Point>),
+        (status = 200, description = "The point", body = WithCommand<BlockPoint>),
         Denied,
         Refused,
     ),

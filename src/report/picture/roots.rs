@@ -11,7 +11,7 @@ use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, number, suffix};
 use super::value_scale;
 use crate::explore::along_delay::AlongDelay;
-use crate::explore::point::Point;
+use crate::explore::point::BlockPoint;
 use crate::sweep::Parameter;
 use crate::sweep::input::units::Units;
 
@@ -35,7 +35,7 @@ const FLAT: f64 = 1e-9;
 #[derive(Debug, Clone, Copy)]
 pub struct PointPicture<'p> {
     /// The point, with the roots to draw.
-    pub point: &'p Point,
+    pub point: &'p BlockPoint,
     /// Its line of delays.
     pub along: &'p AlongDelay,
     /// The units of both.
@@ -97,7 +97,7 @@ fn notes(picture: &PointPicture) -> Vec<Rich> {
     notes
 }
 
-fn verdict(point: &Point) -> String {
+fn verdict(point: &BlockPoint) -> String {
     let stability = &point.stability;
     match (stability.marginal, stability.stable, stability.n_unstable) {
         (true, ..) => "sliding is marginal".into(),

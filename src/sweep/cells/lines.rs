@@ -2,6 +2,7 @@
 
 use crate::linear::line::Linear;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::sweep::input::linear_model::NoAnswer;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::setting::Setting;
@@ -57,15 +58,14 @@ impl<'p> Lines<'p> {
 
     /// The linear model of the line, and its unit of time.
     #[inline(always)]
-    pub(super) fn model(&mut self) -> Result<(Linear, f64), ModelError> {
+    pub(super) fn model(&mut self) -> Result<(Linear, f64), NoAnswer> {
         if self.beyond_letter {
-            if let Some(system) = self.setting.own_system(&mut self.evaluation) {
-                return Ok((Linear::General(Box::new(system?)), 1.0));
-            }
-            let model = self.setting.linear()?;
+            let model = self.setting.linear_in(&mut self.evaluation)?;
             if matches!(model.0, Linear::General(_)) {
                 // The rates of its parameters are needed nevertheless.
-                self.groups()?;
+                if self.setting.system().is_none() {
+                    self.groups()?;
+                }
                 return Ok(model);
             }
         }

@@ -80,7 +80,7 @@ impl MarginColumns {
     fn at(&mut self, here: &Here, letter: bool, stop: &Stop) -> Found {
         let around = Around::of(here.setting, 0.0);
         // The line was accepted, so its parameters are within the model's range.
-        let Some(around) = around.ok().filter(Around::stable) else {
+        let Some(around) = around.ok().flatten().filter(Around::stable) else {
             return UNSTABLE;
         };
         let around = around.heeding(stop);

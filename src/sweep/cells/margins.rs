@@ -24,13 +24,15 @@ pub struct Around {
 }
 
 impl Around {
-    /// All roots must decay at least at the rate `decay` ≥ 0, in 1/time.
+    /// All roots must decay at least at the rate `decay` ≥ 0, in 1/time. None of systems from
+    /// files, and of friction with a state, of which the slope does not say all.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn of(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
-        // Nothing is known of systems from files, and with a state the slope does not say all.
-        setting.check_of_letter(&[], "")?;
+    pub fn of(setting: &Setting, decay: f64) -> Result<Option<Self>, ModelError> {
+        if setting.check_of_letter(&[], "").is_err() {
+            return Ok(None);
+        }
         let oscillator = setting.oscillator()?;
         let control = setting.control();
         let groups = oscillator.groups(setting.sliding_point()?, control);
@@ -45,7 +47,7 @@ impl Around {
         let extended = setting.beyond_letter(&Parameter::BEYOND_LETTER);
         let beyond = extended.map(|_| Beyond { channel, lags });
         let on_axis = beyond.filter(|_| decay == 0.0);
-        Ok(Self {
+        Ok(Some(Self {
             of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),
             line: on_axis.map(|beyond| {
                 (
@@ -58,7 +60,7 @@ impl Around {
             law: setting
                 .friction_law()?
                 .map(|law| (law, setting.get(Parameter::V0))),
-        })
+        }))
     }
 
     /// The same, but once `stop` is set margins are told soon, and mean nothing.
@@ -90,7 +92,7 @@ impl Around {
 
     /// Whether feedback has more than the letter's own.
     #[must_use]
-    pub fn beyond_letter(&self) -> bool {
+    pub fn is_beyond(&self) -> bool {
         self.of.is_beyond()
     }
 

@@ -5,7 +5,6 @@
 //!   sequence, followed and counted; the only file that imports sobol_burley
 //! - `basin_columns`: fields from motions with many starts
 //! - `best`: best settings in physical units, the ranges searched by default
-//! - `best_of_system`: best settings of a system from a file
 //! - `boundaries`: crossing curves of a whole sweep, plane by plane
 //! - `buffers`: the cells of a tile in memory, a column for each field
 //! - `general_columns`: the cells of a line of a general system: counts, margins, roots, reasons
@@ -30,7 +29,6 @@ mod any_plane;
 pub mod basin;
 mod basin_columns;
 pub mod best;
-pub mod best_of_system;
 pub mod boundaries;
 pub mod buffers;
 mod general_columns;

@@ -2,10 +2,46 @@
 
 use super::parameter::Parameter;
 use super::setting::Setting;
-use super::system::Evaluation;
+use super::system::{Evaluation, Undefined};
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
+use crate::linear::general::Class;
 use crate::linear::line::Linear;
 use crate::model::{Channel, Feedback, Groups, Lags, ModelError};
+
+/// Why a setting has no linear model, or no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoAnswer {
+    /// A parameter is outside the model's range.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// An expression has no value.
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+    /// The model is of a kind that is not answered at any delay.
+    #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
+    Refused,
+    /// There is no equation.
+    #[error("this system is not answered: P and Q are both 0")]
+    Zero,
+}
+
+impl From<NoAnswer> for ModelError {
+    fn from(why: NoAnswer) -> Self {
+        let of = |parameter, allowed| Self {
+            parameter,
+            value: f64::NAN,
+            allowed,
+        };
+        match why {
+            NoAnswer::Model(error) => error,
+            NoAnswer::Undefined(undefined) => of(
+                undefined.polynomial,
+                "an expression that has a finite value, A of a smaller degree than B",
+            ),
+            NoAnswer::Refused | NoAnswer::Zero => of("system", "one that is answered"),
+        }
+    }
+}
 
 impl Setting {
     /// The feedback, in physical units.
@@ -45,19 +81,45 @@ impl Setting {
     /// The linear model and the unit of time √(M/κ).
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn linear(&self) -> Result<(Linear, f64), ModelError> {
-        if let Some(system) = self.own_system(&mut Evaluation::default()) {
-            return Ok((Linear::General(Box::new(system?)), 1.0));
+    /// When a parameter is outside the model's range, or an expression has no value.
+    pub fn linear(&self) -> Result<(Linear, f64), NoAnswer> {
+        self.linear_in(&mut Evaluation::default())
+    }
+
+    /// The linear model and the unit of time, where something is known of such a model.
+    ///
+    /// # Errors
+    /// As [`Setting::linear`], and when nothing is known of the model at any delay.
+    pub fn answered(&self) -> Result<(Linear, f64), NoAnswer> {
+        let found = self.linear()?;
+        match &found.0 {
+            Linear::General(system) if system.class() == Class::Refused => {
+                Err(match system.is_zero() {
+                    true => NoAnswer::Zero,
+                    false => NoAnswer::Refused,
+                })
+            }
+            _ => Ok(found),
         }
-        if !self.has_state() && self.beyond_letter(&Parameter::BEYOND_LETTER).is_none() {
-            let oscillator = self.oscillator()?;
-            let groups = oscillator.groups(self.sliding_point()?, self.control());
-            return Ok((Linear::Letter(groups), oscillator.time_unit()));
-        }
-        let system = self.feedback_loop()?.system();
-        let time_unit = self.oscillator()?.time_unit();
-        Ok((Linear::General(Box::new(system)), time_unit))
+    }
+
+    /// The linear model and the unit of time; the expressions of a system from a file are evaluated
+    /// in `scratch`.
+    ///
+    /// # Errors
+    /// As [`Setting::linear`].
+    pub fn linear_in(&self, scratch: &mut Evaluation) -> Result<(Linear, f64), NoAnswer> {
+        let system = match self.system_in(scratch) {
+            Some(system) => return Ok((Linear::General(Box::new(system?)), 1.0)),
+            None if self.is_of_letter() => None,
+            None => Some(self.feedback_loop()?.system()),
+        };
+        let oscillator = self.oscillator()?;
+        let model = match system {
+            Some(system) => Linear::General(Box::new(system)),
+            None => Linear::Letter(oscillator.groups(self.sliding_point()?, self.control())),
+        };
+        Ok((model, oscillator.time_unit()))
     }
 }
 

@@ -139,21 +139,15 @@ impl Setting {
         self.system.iter().flat_map(OwnSystem::parameters)
     }
 
-    /// The system from a file and the values at which it is evaluated; none for the letter's
-    /// system.
+    /// The parameters of the system besides its own; none for the letter's system.
     #[must_use]
-    pub fn evaluation(&self) -> Option<(&SystemModel, Evaluation)> {
-        let system = self.system.as_ref()?;
-        let mut at = Evaluation::default();
-        system.put_into(&mut at, self.feedback());
-        Some((&system.model, at))
+    pub fn others(&self) -> &'static [Parameter] {
+        self.system()
+            .map_or(&[], |model| Parameter::of_systems(model.is_feedback()))
     }
 
     /// The system from a file at this setting, evaluated in `at`; none for the letter's system.
-    ///
-    /// # Errors
-    /// Where an expression has no finite value.
-    pub fn own_system(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
+    pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
         let system = self.system.as_ref()?;
         system.put_into(at, self.feedback());
         Some(system.model.at(at))
@@ -225,6 +219,12 @@ impl Setting {
     #[must_use]
     pub fn has_state(&self) -> bool {
         self.law.as_ref().is_some_and(LawKind::has_state)
+    }
+
+    /// Whether the linear model is the letter's own.
+    #[must_use]
+    pub fn is_of_letter(&self) -> bool {
+        self.check_of_letter(&Parameter::BEYOND_LETTER, "").is_ok()
     }
 
     /// Refuses settings that go beyond the letter's own system by one of these parameters, for

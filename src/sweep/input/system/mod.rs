@@ -42,7 +42,7 @@ use parameter::OwnParameter;
 use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
-use crate::model::{Channel, ModelError};
+use crate::model::Channel;
 
 /// A system whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,16 +149,6 @@ pub struct Undefined {
     pub polynomial: &'static str,
     /// What is wrong.
     pub what: String,
-}
-
-impl From<Undefined> for ModelError {
-    fn from(undefined: Undefined) -> Self {
-        Self {
-            parameter: undefined.polynomial,
-            value: f64::NAN,
-            allowed: "an expression that has a finite value, A of a smaller degree than B",
-        }
-    }
 }
 
 impl SystemModel {

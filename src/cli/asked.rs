@@ -1,0 +1,49 @@
+//! The setting that a command is asked about: of the block, or of a system from a file.
+
+use std::collections::BTreeMap;
+
+use slipmap::sweep::Setting;
+use slipmap::sweep::input::units::Units;
+
+use super::json::Inputs;
+
+/// A setting with the units of its numbers.
+pub(super) struct Asked {
+    pub(super) setting: Setting,
+    pub(super) units: Units,
+    /// The flag that names a system from a file, with its value; none for the block.
+    pub(super) named: Option<(&'static str, String)>,
+}
+
+impl Asked {
+    /// The setting of a system from a file, which `value` of the flag `flag` names.
+    pub(super) fn of_system(setting: Setting, flag: &'static str, value: String) -> Self {
+        Self {
+            setting,
+            units: Units::default(),
+            named: Some((flag, value)),
+        }
+    }
+
+    /// The parameters of `wanted` names, and what else is asked about.
+    pub(super) fn inputs(&self, wanted: impl Fn(&str) -> bool) -> Inputs {
+        let Self { setting, units, .. } = self;
+        let Some((flag, value)) = &self.named else {
+            return Inputs::of_setting(setting, units, |p| wanted(p.name()));
+        };
+        let own = setting.own().filter(|(own, _)| wanted(&own.name));
+        let set: BTreeMap<&str, f64> = own.map(|(own, value)| (&*own.name, value)).collect();
+        let inputs = Inputs::default().and(flag, value).and("set", set);
+        let others = setting.others().iter().filter(|p| wanted(p.name()));
+        others.fold(inputs, |inputs, p| inputs.and(p.name(), setting.get(*p)))
+    }
+
+    /// What is stable or not, in words; `block` for the block.
+    pub(super) fn subject<'s>(&'s self, block: &'s str) -> &'s str {
+        match self.setting.system().map(|model| &*model.title) {
+            None => block,
+            Some("") => "the system",
+            Some(title) => title,
+        }
+    }
+}
