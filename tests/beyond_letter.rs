@@ -216,7 +216,7 @@ fn delay_margins_of_the_tables() {
 fn zeros_change_nothing() {
     for row in all_rows() {
         let mut plain = setting(&row, [3.0, 0.02, 0.25]);
-        if plain.has_state() {
+        if plain.rate_and_state().is_some() {
             continue;
         }
         for parameter in Parameter::BEYOND_LETTER {
@@ -237,7 +237,7 @@ fn zeros_change_nothing() {
 fn short_lags_are_harmless() {
     for row in all_rows() {
         let mut plain = setting(&row, [1.0; 3]);
-        if plain.has_state() {
+        if plain.rate_and_state().is_some() {
             continue;
         }
         for parameter in Parameter::BEYOND_LETTER {

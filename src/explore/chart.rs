@@ -180,7 +180,7 @@ pub fn bytes(plan: &Plan) -> u64 {
 pub fn is_slow(plan: &Plan) -> bool {
     let spec = &plan.spec;
     let rooted = spec.fields.iter().any(|field| field.roots_needed() > 0);
-    (rooted && spec.beyond_letter())
+    (rooted && !spec.is_of_letter())
         || plan.walks_boundaries()
         || spec.follows_motions()
         || spec.basin.is_some()

@@ -127,7 +127,7 @@ impl BlockPoint {
 
 impl SystemPoint {
     fn of(setting: &Setting, model: &SystemModel, mut stability: Stability) -> Self {
-        let line_of_delays = !model.depends_on_delay();
+        let line_of_delays = setting.has_lines();
         if !line_of_delays {
             forget_other_delays(&mut stability);
         }

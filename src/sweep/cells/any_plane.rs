@@ -43,8 +43,7 @@ pub(super) fn trace_window(
     };
     let at = |p: f64, q: f64| system_at(p, q).ok();
     let delays = of.map(|of| *of == Parameter::Tau || *of == Parameter::Latency);
-    let own_lines = setting.system().is_none_or(|s| !s.depends_on_delay());
-    let has_lines = *of[1] == Parameter::Tau && own_lines;
+    let has_lines = *of[1] == Parameter::Tau && setting.has_lines();
     let traced = |sigma: f64| {
         let mut curves = Ok(PlaneCurves::default());
         for part in split(window, &jumps) {

@@ -300,7 +300,7 @@ impl Scales {
         let mut search = self.search(
             General {
                 system_at: &system_at,
-                lines: setting.system().is_none_or(|s| !s.depends_on_delay()),
+                lines: setting.has_lines(),
                 width: 0.0,
             },
             ranges,

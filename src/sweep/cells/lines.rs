@@ -16,8 +16,8 @@ pub(super) struct Lines<'p> {
     pub(super) setting: Setting,
     /// Index of the setting along each axis.
     index: Vec<usize>,
-    /// Whether some line may go beyond the letter's own system.
-    beyond_letter: bool,
+    /// Whether every line is of the letter's own model.
+    of_letter: bool,
     /// Scratch space for the expressions of a system from a file.
     evaluation: Evaluation,
     /// The part of the model that the gains do not change.
@@ -31,7 +31,7 @@ impl<'p> Lines<'p> {
             plan,
             setting: plan.setting(&index),
             index,
-            beyond_letter: plan.spec.beyond_letter(),
+            of_letter: plan.spec.is_of_letter(),
             evaluation: Evaluation::default(),
             uncontrolled: None,
         }
@@ -59,7 +59,7 @@ impl<'p> Lines<'p> {
     /// The linear model of the line, and its unit of time.
     #[inline(always)]
     pub(super) fn model(&mut self) -> Result<(Linear, f64), NoAnswer> {
-        if self.beyond_letter {
+        if !self.of_letter {
             let model = self.setting.linear_in(&mut self.evaluation)?;
             if matches!(model.0, Linear::General(_)) {
                 // The rates of its parameters are needed nevertheless.

@@ -44,8 +44,7 @@ impl Around {
             tau,
             decay: decay * oscillator.time_unit(),
         };
-        let extended = setting.beyond_letter(&Parameter::BEYOND_LETTER);
-        let beyond = extended.map(|_| Beyond { channel, lags });
+        let beyond = (!setting.is_of_letter()).then_some(Beyond { channel, lags });
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
             of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),

@@ -111,12 +111,7 @@ impl<'p> Worker<'p> {
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
-            by_delay: plan
-                .spec
-                .fixed
-                .system()
-                .filter(|system| system.depends_on_delay())
-                .map(|_| Delays::new(&[0.0])),
+            by_delay: (!plan.spec.fixed.has_lines()).then(|| Delays::new(&[0.0])),
         }
     }
 

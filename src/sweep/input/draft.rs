@@ -21,7 +21,7 @@ use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::search::LIMIT;
 use super::simulation::{DISTURBED, Simulation};
-use super::spec::{SweepSpec, beyond_letter};
+use super::spec::{SweepSpec, most};
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
@@ -243,9 +243,7 @@ impl Draft {
             simulation.disturbance = DISTURBED;
         }
         let mut fields = self.fields.unwrap_or(default_fields);
-        let beyond = fixed.has_state()
-            || fixed.system().is_some()
-            || beyond_letter(&fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some();
+        let beyond = !most(&fixed, &self.axes).is_of_letter();
         if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
             fields.push(Field::Reason);
             fields.sort_unstable();

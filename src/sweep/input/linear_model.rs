@@ -78,6 +78,13 @@ impl Setting {
         Ok(FeedbackLoop::new(friction, a_v, a_n, channel, lags))
     }
 
+    /// Whether the linear model is the same at all delays. It is not where the polynomials of a
+    /// system from a file depend on the delay.
+    #[must_use]
+    pub fn has_lines(&self) -> bool {
+        self.system().is_none_or(|model| !model.depends_on_delay())
+    }
+
     /// The linear model and the unit of time √(M/κ).
     ///
     /// # Errors

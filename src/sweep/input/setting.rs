@@ -208,17 +208,11 @@ impl Setting {
     /// The first of these parameters with which the setting goes beyond the letter's own system.
     /// Without gains, memory and latency have no effect and do not count.
     #[must_use]
-    pub fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
+    pub(super) fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
         let idle = self.control() == Control::default();
         let left_aside = |p: Parameter| idle && matches!(p, Parameter::Memory | Parameter::Latency);
         let mut of = of.iter().copied();
         of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
-    }
-
-    /// Whether friction has a state besides the velocity.
-    #[must_use]
-    pub fn has_state(&self) -> bool {
-        self.law.as_ref().is_some_and(LawKind::has_state)
     }
 
     /// Whether the linear model is the letter's own.
@@ -244,7 +238,7 @@ impl Setting {
                 allowed: "the letter's where a block on its spring is meant",
             });
         }
-        if self.has_state() {
+        if self.rate_and_state().is_some() {
             return Err(ModelError::of_law(OF_VELOCITY));
         }
         match self.beyond_letter(of) {

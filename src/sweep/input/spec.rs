@@ -135,13 +135,11 @@ impl SweepSpec {
             .collect()
     }
 
-    /// Whether some cell has memory, latency, lags or a state of friction, which the letter's own
-    /// system lacks.
+    /// Whether the linear model of every cell is the letter's own: without memory, latency, lags
+    /// and a state of friction.
     #[must_use]
-    pub fn beyond_letter(&self) -> bool {
-        let of = &Parameter::BEYOND_LETTER;
-        let other = self.fixed.has_state() || self.fixed.system().is_some();
-        other || beyond_letter(&self.fixed, &self.axes, of).is_some()
+    pub fn is_of_letter(&self) -> bool {
+        most(&self.fixed, &self.axes).is_of_letter()
     }
 
     /// Whether each cell has a sliding state whose linear stability can be computed. A friction law
@@ -181,13 +179,13 @@ impl SweepSpec {
     }
 }
 
-/// The first of the parameters `of` with which some cell goes beyond the letter's own feedback.
-pub(super) fn beyond_letter(fixed: &Setting, axes: &[Axis], of: &[Parameter]) -> Option<Parameter> {
+/// A setting with all that acts in some cell.
+pub(super) fn most(fixed: &Setting, axes: &[Axis]) -> Setting {
     let mut most = fixed.clone();
     for axis in axes {
         // One nonzero value is enough.
         let value = axis.values.iter().copied().find(|value| *value != 0.0);
         most.vary(&axis.parameter, value.unwrap_or(0.0));
     }
-    most.beyond_letter(of)
+    most
 }

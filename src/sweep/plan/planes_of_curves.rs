@@ -66,11 +66,11 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
         Some(false) => return Err(NoBoundaries::Unwanted),
         None => {}
     }
-    let most = match (traced_by_closed_form(spec, q), spec.beyond_letter()) {
+    let most = match (traced_by_closed_form(spec, q), spec.is_of_letter()) {
         (true, _) => PLANES_TRACED_UNASKED,
-        (false, true) => PLANES_WALKED_UNASKED,
+        (false, false) => PLANES_WALKED_UNASKED,
         // In the letter's own planes without the delay, curves are traced only when asked for.
-        (false, false) => return Err(NoBoundaries::NoDelay),
+        (false, true) => return Err(NoBoundaries::NoDelay),
     };
     match planes <= most {
         true => Ok((p, q)),
@@ -82,5 +82,5 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
 /// lines of delays.
 #[must_use]
 pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
-    spec.axes[q].parameter == Parameter::Tau && !spec.beyond_letter()
+    spec.axes[q].parameter == Parameter::Tau && spec.is_of_letter()
 }

@@ -7,7 +7,7 @@ use crate::sweep::input::field::Field;
 use crate::sweep::input::law_kind::Formula;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::NOT_IN_MOTIONS;
-use crate::sweep::input::spec::beyond_letter;
+use crate::sweep::input::spec::most;
 use crate::sweep::input::toml_reader::SpecError;
 
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
@@ -36,7 +36,7 @@ impl Draft {
             return Ok(());
         };
         self.given.check_motions()?;
-        match beyond_letter(fixed, &self.axes, NOT_IN_MOTIONS) {
+        match most(fixed, &self.axes).beyond_letter(NOT_IN_MOTIONS) {
             Some(parameter) => {
                 let message = format!("{} is not known to motions", parameter.name());
                 let place = self.given.place(parameter).unwrap_or(field);
@@ -59,7 +59,8 @@ impl Draft {
     /// Checks that the ratio of stiffnesses is asked only of rate-and-state friction.
     pub(super) fn check_stiffness_ratio(&self, fixed: &Setting) -> Result<(), SpecError> {
         let ratio = |field: Field| field == Field::StiffnessRatio;
-        match self.limit.first_field(ratio).filter(|_| !fixed.has_state()) {
+        let without_state = fixed.rate_and_state().is_none();
+        match self.limit.first_field(ratio).filter(|_| without_state) {
             Some((field, place)) => {
                 let law = Formula::RateAndState.name();
                 let message = format!("{} is of the {law} law", field.name());
