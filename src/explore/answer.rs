@@ -17,7 +17,7 @@ use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
 use crate::model::stop::Stop;
-use crate::sweep::input::command::{command_line, vc_command};
+use crate::sweep::input::command::{point_command, vc_command};
 use crate::sweep::input::point_file::{PointOf, PointSpec};
 use crate::sweep::plan::memory;
 use crate::sweep::{CaseSpec, Plan};
@@ -191,7 +191,7 @@ impl Asked {
                 }
                 json(&WithCommand {
                     answer,
-                    command: command_line("point", setting, |p| setting.uses(p))
+                    command: point_command(setting)
                         .map(|command| format!("{command} --roots={ROOTS}")),
                 })
             }

@@ -3,11 +3,11 @@
 
 use crate::critical::switch_on::Phase;
 use crate::model::Control;
-use crate::sweep::input::command::{command_line, system_command, vc_command};
+use crate::sweep::input::command::{command_line, point_command, vc_command};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
-use crate::sweep::input::setting_text::{number, of_point, setting_text, table};
+use crate::sweep::input::setting_text::{number, setting_text, table};
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::{Plan, SweepSpec};
 
@@ -40,7 +40,7 @@ impl CellTexts {
         }
         if setting.system().is_some() {
             return Self {
-                command: system_command(&setting),
+                command: point_command(&setting),
                 ..Self::default()
             };
         }
@@ -58,9 +58,8 @@ impl CellTexts {
         let vc = (law && (delay || uncontrolled))
             .then(|| asked_for(protocol) + &setting_text(&setting, &spec.units, no_v0));
         let moves = law && slides && (delay || uncontrolled);
-        let of_point = |parameter| of_point(&setting, parameter);
         let command = match (&point, &vc) {
-            (Some(_), _) => command_line("point", &setting, of_point),
+            (Some(_), _) => point_command(&setting),
             (None, Some(_)) => vc_command(&setting, protocol),
             (None, None) => None,
         };

@@ -4,6 +4,7 @@ use super::law_kind::LawKind;
 use super::parameter::Parameter;
 use super::search::Protocol;
 use super::setting::Setting;
+use super::setting_text::of_point;
 use super::system::shipped;
 use crate::critical::switch_on::Phase;
 
@@ -48,11 +49,13 @@ pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     command_line(&command, setting, known)
 }
 
-/// `slipmap point` for a setting of a system that is part of the program. None for other systems,
+/// `slipmap point` for a setting. None for a table and for a system that is no part of the program,
 /// whose files are not known.
 #[must_use]
-pub fn system_command(setting: &Setting) -> Option<String> {
-    let model = setting.system()?;
+pub fn point_command(setting: &Setting) -> Option<String> {
+    let Some(model) = setting.system() else {
+        return command_line("point", setting, |parameter| of_point(setting, parameter));
+    };
     let known = |name: &str| shipped::system(name).is_some_and(|known| known == *model);
     let mut names = shipped::SHIPPED.into_iter().map(|(name, _)| name);
     let name = names.find(|name| known(name))?;
@@ -61,9 +64,8 @@ pub fn system_command(setting: &Setting) -> Option<String> {
         .filter(|(own, value)| own.default.to_bits() != value.to_bits())
         .map(|(own, value)| format!(" --set={}={value}", own.name))
         .collect();
-    let others = Parameter::of_systems(model.is_feedback()).iter();
+    let others = setting.others().iter().filter(|p| setting.uses(**p));
     let others: String = others
-        .filter(|p| setting.uses(**p))
         .map(|p| format!(" --{}={}", p.name(), setting.get(*p)))
         .collect();
     Some(format!("slipmap point --system={name}{sets}{others}"))
