@@ -1,4 +1,4 @@
-//! The feedback and the linear model of a setting.
+//! The feedback, the groups and the linear model of a setting.
 
 use super::parameter::Parameter;
 use super::setting::Setting;
@@ -61,6 +61,21 @@ impl Setting {
                 sensor,
             },
         }
+    }
+
+    /// The dimensionless groups and the unit of time √(M/κ).
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range, and for settings that these groups do not
+    /// describe: with memory, latency, lags or a state of friction.
+    pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
+        self.check_of_letter(
+            &Parameter::BEYOND_LETTER,
+            "0 in what is known of the letter's own feedback alone",
+        )?;
+        let oscillator = self.oscillator()?;
+        let groups = oscillator.groups(self.sliding_point()?, self.control());
+        Ok((groups, oscillator.time_unit()))
     }
 
     /// The feedback loop about steady sliding, dimensionless.

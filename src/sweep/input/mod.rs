@@ -15,7 +15,7 @@
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
 //!   constructor
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
-//! - [`linear_model`]: the feedback and the linear model of a setting
+//! - [`linear_model`]: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
 //! - `nearest`: suggestions for unknown names
 //! - `own_system`: a system from a file with values of its own parameters, in a setting

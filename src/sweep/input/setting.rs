@@ -10,9 +10,7 @@ use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
 use super::system::{Evaluation, SystemModel, Undefined};
 use crate::linear::general::System;
-use crate::model::{
-    Control, FrictionLaw, Groups, ModelError, Oscillator, RateAndState, SlidingPoint,
-};
+use crate::model::{Control, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
 
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,8 +100,16 @@ impl GivenError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],
-    law: Option<LawKind>,
-    system: Option<OwnSystem>,
+    subject: Subject,
+}
+
+/// What a setting describes.
+#[derive(Debug, Clone, PartialEq)]
+enum Subject {
+    /// The block on its spring, with a friction law or given μ_K and μ_K′.
+    Block(Option<LawKind>),
+    /// A system from a file.
+    File(OwnSystem),
 }
 
 impl Setting {
@@ -114,8 +120,7 @@ impl Setting {
         let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
         Self {
             values,
-            law,
-            system: None,
+            subject: Subject::Block(law),
         }
     }
 
@@ -123,20 +128,28 @@ impl Setting {
     #[must_use]
     pub fn of_system(model: Arc<SystemModel>) -> Self {
         Self {
-            system: Some(OwnSystem::new(model)),
+            subject: Subject::File(OwnSystem::new(model)),
             ..Self::new(None)
+        }
+    }
+
+    fn file(&self) -> Option<&OwnSystem> {
+        match &self.subject {
+            Subject::Block(_) => None,
+            Subject::File(system) => Some(system),
         }
     }
 
     /// The system from a file, where it is not the letter's.
     #[must_use]
     pub fn system(&self) -> Option<&SystemModel> {
-        self.system.as_ref().map(|system| &*system.model)
+        self.file().map(|system| &*system.model)
     }
 
     /// The own parameters of the system, with their values.
     pub fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
-        self.system.iter().flat_map(OwnSystem::parameters)
+        let system = self.file().into_iter();
+        system.flat_map(OwnSystem::parameters)
     }
 
     /// The parameters of the system besides its own; none for the letter's system.
@@ -148,7 +161,7 @@ impl Setting {
 
     /// The system from a file at this setting, evaluated in `at`; none for the letter's system.
     pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
-        let system = self.system.as_ref()?;
+        let system = self.file()?;
         system.put_into(at, self.feedback());
         Some(system.model.at(at))
     }
@@ -156,20 +169,20 @@ impl Setting {
     /// The value of the quantity of an axis.
     #[must_use]
     pub fn value_of(&self, quantity: &Quantity) -> f64 {
-        match (quantity, &self.system) {
+        match (quantity, &self.subject) {
             (Quantity::Known(parameter), _) => self.get(*parameter),
-            (Quantity::Own(own), Some(system)) => system.get(own),
-            (Quantity::Own(_), None) => f64::NAN,
+            (Quantity::Own(own), Subject::File(system)) => system.get(own),
+            (Quantity::Own(_), Subject::Block(_)) => f64::NAN,
         }
     }
 
     /// Sets the value of the quantity of an axis.
     #[inline]
     pub fn vary(&mut self, quantity: &Quantity, value: f64) {
-        match (quantity, &mut self.system) {
+        match (quantity, &mut self.subject) {
             (Quantity::Known(parameter), _) => self.set(*parameter, value),
-            (Quantity::Own(own), Some(system)) => system.set(own, value),
-            (Quantity::Own(_), None) => {}
+            (Quantity::Own(own), Subject::File(system)) => system.set(own, value),
+            (Quantity::Own(_), Subject::Block(_)) => {}
         }
     }
 
@@ -189,7 +202,10 @@ impl Setting {
     /// The friction law that the setting uses, if any.
     #[must_use]
     pub fn law(&self) -> Option<&LawKind> {
-        self.law.as_ref()
+        match &self.subject {
+            Subject::Block(law) => law.as_ref(),
+            Subject::File(_) => None,
+        }
     }
 
     /// True for the parameters on which a cell of this setting depends: those that it takes and has
@@ -197,9 +213,9 @@ impl Setting {
     /// [`SweepSpec::uses`](super::spec::SweepSpec::uses) instead.
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
-        let taken = match &self.system {
-            Some(system) => Parameter::of_systems(system.model.is_feedback()).contains(&parameter),
-            None => parameter.of_start() || Self::takes(self.law.as_ref(), parameter),
+        let taken = match &self.subject {
+            Subject::Block(law) => parameter.of_start() || Self::takes(law.as_ref(), parameter),
+            Subject::File(_) => self.others().contains(&parameter),
         };
         let value = self.get(parameter);
         taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
@@ -231,7 +247,7 @@ impl Setting {
         of: &[Parameter],
         allowed: &'static str,
     ) -> Result<(), ModelError> {
-        if self.system.is_some() {
+        if self.system().is_some() {
             return Err(ModelError {
                 parameter: "system",
                 value: f64::NAN,
@@ -307,14 +323,14 @@ impl Setting {
     /// # Errors
     /// When the law is ill-posed, see [`FrictionLaw`].
     pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
-        let law = self.law.as_ref().filter(|law| !law.has_state());
+        let law = self.law().filter(|law| !law.has_state());
         law.map(|law| law.at(self)).transpose()
     }
 
     /// The law of rate-and-state friction; none for other laws.
     #[must_use]
     pub fn rate_and_state(&self) -> Option<RateAndState> {
-        self.law.as_ref()?.with_state(self)
+        self.law()?.with_state(self)
     }
 
     /// κ/κ_c of rate-and-state friction; infinite where sliding without control is stable at every
@@ -355,25 +371,10 @@ impl Setting {
         )
     }
 
-    /// The dimensionless groups and the unit of time √(M/κ).
-    ///
-    /// # Errors
-    /// When a parameter is outside the model's range, and for settings that these groups do not
-    /// describe: with memory, latency, lags or a state of friction.
-    pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
-        self.check_of_letter(
-            &Parameter::BEYOND_LETTER,
-            "0 in what is known of the letter's own feedback alone",
-        )?;
-        let oscillator = self.oscillator()?;
-        let groups = oscillator.groups(self.sliding_point()?, self.control());
-        Ok((groups, oscillator.time_unit()))
-    }
-
     /// Whether a delay is given but has no effect, because both gains are 0.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
-        let idle = self.system.is_none() && self.control() == Control::default();
+        let idle = self.system().is_none() && self.control() == Control::default();
         idle && self.get(Parameter::Tau) > 0.0
     }
 
