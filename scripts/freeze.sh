@@ -350,7 +350,7 @@ texts() {
 mistakes() {
     local name=0 line
     told
-    told pont
+    told points
     told point
     told point --mu-prime=-0.3 --tau=-1
     told point --mu-prime=nan --tau=1
