@@ -5,13 +5,13 @@ use serde::Serialize;
 use super::finite;
 use super::margin_kind::{MarginKind, sign};
 use super::stable_line::{Latencies, MOST_INTERVALS, ends};
+use crate::linear::Direction;
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
 use crate::linear::general::{self as linear, RightOf};
 use crate::linear::line::{Linear, Roots};
 use crate::linear::newton::Root;
 use crate::linear::stable_delays::StableInterval;
-use crate::linear::{Direction, MarginalTolerance};
 use crate::model::stop::Stop;
 
 /// Stability of a linear model at a delay.
@@ -170,7 +170,7 @@ impl Stability {
         let at = tau / time_unit;
         let found = roots.spectrum(at, wanted.roots.into());
         let line = &*roots.line(time_unit);
-        let count = line.count(tau, MarginalTolerance::default());
+        let count = roots.count(tau, time_unit);
         let mut intervals = line.stable_intervals();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
         let truncated = intervals.next().is_some() || intervals.gave_up();

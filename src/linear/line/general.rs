@@ -1,34 +1,46 @@
-//! Any linear system with one delay, and with latency, within a bound of work.
+//! Any linear system with one delay, and with latency.
+
+use std::cell::OnceCell;
 
 use super::{Intervals, Line, Roots};
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::Crossing;
 use crate::linear::general::stable::{Change, StableIntervals};
-use crate::linear::general::{Class, DelayLine, Reason, RightOf, RootCounter, Spectrum, System};
-use crate::model::stop::Stop;
+use crate::linear::general::{Class, DelayLine, Reason, RightOf, RootCounter, Spectrum};
 
 /// The roots of a general system.
 pub(super) struct GeneralRoots {
     counter: RootCounter,
-    line: DelayLine,
+    line: OnceCell<DelayLine>,
 }
 
 impl GeneralRoots {
-    pub(super) fn new(system: &System, stop: &Stop) -> Self {
+    /// The roots as `counter` finds them.
+    pub(super) fn new(counter: RootCounter) -> Self {
         Self {
-            counter: RootCounter::new(system).bounded().heeding(stop),
-            line: DelayLine::of(system),
+            counter,
+            line: OnceCell::new(),
         }
+    }
+
+    /// All delays, dimensionless, found when they are first asked for.
+    fn delays(&self) -> &DelayLine {
+        self.line
+            .get_or_init(|| DelayLine::of(self.counter.system()))
     }
 }
 
 impl Roots for GeneralRoots {
     fn line(&self, time_unit: f64) -> Box<dyn Line> {
-        Box::new(self.line.clone().in_physical_time(time_unit))
+        Box::new(self.delays().clone().in_physical_time(time_unit))
+    }
+
+    fn count(&self, tau: f64, time_unit: f64) -> Option<Count> {
+        Line::count(self.delays(), tau / time_unit, MarginalTolerance::default())
     }
 
     fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum {
-        Spectrum::at(&self.counter, &self.line, tau, wanted)
+        Spectrum::at(&self.counter, self.delays(), tau, wanted)
     }
 
     fn right_of(&self, tau: f64, line: f64) -> RightOf {

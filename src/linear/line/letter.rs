@@ -30,6 +30,11 @@ impl Roots for LetterRoots {
         Box::new(self.crossings.in_physical_time(time_unit))
     }
 
+    fn count(&self, tau: f64, time_unit: f64) -> Option<Count> {
+        let crossings = self.crossings.in_physical_time(time_unit);
+        Some(crossings.count(tau, MarginalTolerance::default()))
+    }
+
     fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum {
         let count = self.crossings.count(tau, MarginalTolerance::default());
         let found = Rightmost::at(self.groups, tau, wanted, count);

@@ -4,7 +4,7 @@ use super::Roots;
 use super::general::GeneralRoots;
 use super::letter::LetterRoots;
 use crate::linear::feedback_loop::FeedbackLoop;
-use crate::linear::general::System;
+use crate::linear::general::{RootCounter, System};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups, Lags};
 
@@ -43,9 +43,19 @@ impl Linear {
     /// meaningless.
     #[must_use]
     pub fn roots(&self, stop: &Stop) -> Box<dyn Roots> {
+        self.roots_by(|system| RootCounter::new(system).bounded().heeding(stop))
+    }
+
+    /// Its roots without a bound of work, for a second opinion on what was found within one.
+    #[must_use]
+    pub fn roots_at_any_cost(&self) -> Box<dyn Roots> {
+        self.roots_by(RootCounter::new)
+    }
+
+    fn roots_by(&self, counter: impl Fn(&System) -> RootCounter) -> Box<dyn Roots> {
         match self {
             Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
-            Self::General(system) => Box::new(GeneralRoots::new(system, stop)),
+            Self::General(system) => Box::new(GeneralRoots::new(counter(system))),
         }
     }
 }

@@ -24,6 +24,10 @@ pub trait Roots {
     /// All delays, in units of which √(M/κ) is `time_unit`.
     fn line(&self, time_unit: f64) -> Box<dyn Line>;
 
+    /// The number of unstable roots at the delay `tau` ≥ 0, in units of which √(M/κ) is
+    /// `time_unit`; none where infinitely many are unstable or nothing is known.
+    fn count(&self, tau: f64, time_unit: f64) -> Option<Count>;
+
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0.
     fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum;
 

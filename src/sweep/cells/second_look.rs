@@ -7,7 +7,6 @@ use crate::critical::{CriticalVelocity, Method, Regime, Transition};
 use crate::linear::general;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::ModelError;
-use crate::model::stop::Stop;
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
@@ -95,7 +94,7 @@ pub fn second_look(
     if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::Abscissa)) {
         let (model, unit) = setting.linear()?;
         let tau = plan.delay(index) / unit;
-        let roots = model.roots(&Stop::default());
+        let roots = model.roots_at_any_cost();
         let right_of = |line: f64| match roots.right_of(tau, line) {
             general::RightOf::Infinite => Some(u64::MAX),
             other => other.finite(),
