@@ -7,8 +7,8 @@ use super::number::{Number, UNIT};
 use super::on_axis::{At, OnAxis};
 
 /// A phase is blurred where its error may be larger than this: in systems up to the degree of a
-/// feedback loop, and above. Bounds grow with the degree: ordinary systems of degree 8 know their
-/// phases to 1e-7, and are not to take fifty times as long.
+/// feedback loop, and above. The bounds of ordinary systems grow with the degree, and are not to
+/// make them slow.
 const BLURRED_PHASE: [f64; 2] = [1e-9, 1e-6];
 /// The highest degree of a feedback loop: friction with a state, and three lags.
 const OF_LOOPS: usize = 6;
@@ -26,7 +26,7 @@ const LAST_STEP: f64 = 16.0 * UNIT;
 /// zero may be several, or the phase is uncertain, or it may be 0 as well as 2π.
 #[inline]
 pub(in super::super) fn blurred(system: &System, switch: &Switch, phase: Option<&Angle>) -> bool {
-    let allowed = BLURRED_PHASE[usize::from(system.p.degree() > OF_LOOPS)];
+    let allowed = BLURRED_PHASE[usize::from(system.p.degree().max(system.q.degree()) > OF_LOOPS)];
     let known = phase.is_some_and(|of| of.error <= allowed && is_not_0(of, switch));
     !(known && switch.simple && switch.error <= BLURRED_FREQUENCY * switch.omega)
 }
