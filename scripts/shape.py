@@ -259,7 +259,10 @@ ROWS = {
     "twice": ("traits for the letter and one other", Shape.twice_for_the_letter),
     "kind": ("matches on the kind of linear model", Shape.matches_on_kind),
     "late": ("calls of late", lambda s: s.all(r"\.late\(\)")),
-    "beyond": ("calls of beyond_letter, has_state, own_system", lambda s: s.calls("beyond_letter|has_state|own_system")),
+    "beyond": (
+        "calls that ask beyond the letter or of a file",
+        lambda s: s.calls("beyond_letter|has_state|own_system|system_in|is_of_letter|check_of_letter|is_beyond"),
+    ),
     "no-memory": ("memory: 0.0, with tests", lambda s: s.with_tests(r"\bmemory: 0\.0")),
     "problems": (
         "Problem literals, with tests",

@@ -47,7 +47,8 @@ impl Lags {
     }
 }
 
-/// Delayed feedback of the elongation, physical or dimensionless.
+/// Delayed feedback of the elongation: α_v in 1/time, α_N in force/length, and times; or all of it
+/// in the units of an oscillator, see [`Feedback::dimensionless`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Feedback {
     /// α_v and α_N.

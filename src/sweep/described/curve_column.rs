@@ -47,7 +47,7 @@ pub enum Named {
     Second(&'static str),
 }
 
-/// Describes a column.
+/// What a column is called, and what its numbers are.
 #[derive(Debug, Clone, Copy)]
 pub struct BoundaryColumn {
     /// What each number belongs to.

@@ -202,7 +202,7 @@ fn flags(values: impl Into<Value>, meanings: &str) -> [Attribute; 2] {
     ]
 }
 
-/// Describes kinds: the number k stands for `names[k]`.
+/// The attributes of kinds: the number k stands for `names[k]`.
 fn kinds(long_name: &str, names: &[&str]) -> Vec<Attribute> {
     let numbers: Vec<u8> = (0..names.len() as u8).collect();
     let mut kinds = vec![attribute("long_name", long_name)];

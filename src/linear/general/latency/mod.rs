@@ -1,4 +1,4 @@
-//! FeedbackForm that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
+//! Feedback that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
 //!
 //! On the imaginary axis either delay is a line while the other one is fixed. Crossings follow from
 //! (4) and (5) of [`general::line`](super::line) as without latency, but |P|² − |Q|² swings with

@@ -165,12 +165,6 @@ impl SystemModel {
         self.polynomials().any(|(_, of)| of.tape.uses(tau))
     }
 
-    /// The index of the parameter with this name.
-    #[must_use]
-    pub fn index_of(&self, name: &str) -> Option<usize> {
-        self.parameters.iter().position(|own| own.name == name)
-    }
-
     /// The polynomials as written, with their names.
     pub fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.polynomials().map(|(name, of)| (name, &*of.text))
