@@ -66,13 +66,16 @@ pub(crate) trait Series {
     fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64;
 
     /// The longest step, at most `length`, on which the series is accurate to `error`, relative to
-    /// the load. `speed` holds the coefficients of ẋ.
-    ///
-    /// Coulomb's law and a cubic of a table are polynomials of the speed. The pole of velocity
-    /// weakening shows in the growth of its coefficients. Only Stribeck's Gaussian can be missed by
-    /// them.
+    /// the load. `speed` holds the coefficients of ẋ. All of `length` where the law is a polynomial
+    /// of the speed, or shows in the growth of its coefficients how far they hold.
     fn resolved(&self, _speed: &[f64], length: f64, _error: f64) -> f64 {
         length
+    }
+
+    /// μ_K at a speed in the motion's units by the piece of the law in use, also beyond its ends;
+    /// none where the law is of one piece.
+    fn value(&self, _speed: f64) -> Option<f64> {
+        None
     }
 
     /// Restarts at `speed`, whatever the speed was before.

@@ -153,13 +153,6 @@ impl TableSeries {
         };
     }
 
-    /// μ_K by the cubic in use, also beyond its ends.
-    pub(crate) fn value(&self, speed: f64) -> f64 {
-        let w = (speed - self.piece.from) / self.piece.width;
-        let [c0, c1, c2, c3] = self.piece.c;
-        ((c3 * w + c2) * w + c1) * w + c0
-    }
-
     /// The speed of a point; None where there is no such point, or it is at rest.
     fn knot(&self, point: Option<usize>) -> Option<f64> {
         let speed = *self.table.speeds().get(point?)?;
@@ -215,6 +208,12 @@ impl Series for TableSeries {
         self.slope[k] = product(&self.bend, &self.w, k) + first(c1);
         self.coefficient[k] = product(&self.slope, &self.w, k) + first(c0);
         product(&self.coefficient, load, k)
+    }
+
+    fn value(&self, speed: f64) -> Option<f64> {
+        let w = (speed - self.piece.from) / self.piece.width;
+        let [c0, c1, c2, c3] = self.piece.c;
+        Some(((c3 * w + c2) * w + c1) * w + c0)
     }
 
     fn restart(&mut self, speed: f64) {

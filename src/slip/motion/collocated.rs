@@ -1,7 +1,7 @@
 //! Steps of a motion by collocation: how long they are, and what the rates are there.
 
 use super::{Control, Mode, Motion};
-use crate::model::law::FrictionSeries;
+use crate::model::law::{Series, with_series};
 use crate::slip::collocation::solve;
 
 /// The longest step, in units of √(M/κ) and of the time in which rates change by a factor of e.
@@ -88,11 +88,10 @@ impl Motion {
     /// μ_K at a speed in the motion's units, a little below 0 as well.
     fn friction_at(&self, speed: f64) -> f64 {
         let p = &self.parameters;
-        match &self.friction {
-            FrictionSeries::Table(series) => series.value(speed),
-            _ => p
-                .law
-                .mu_k((speed * p.velocity_unit).max(p.law.least_speed())),
-        }
+        let by_piece = with_series!(&self.friction, series => series.value(speed));
+        by_piece.unwrap_or_else(|| {
+            let speed = (speed * p.velocity_unit).max(p.law.least_speed());
+            p.law.mu_k(speed)
+        })
     }
 }
