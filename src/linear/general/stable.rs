@@ -4,8 +4,8 @@ use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 use std::f64::consts::{PI, TAU};
 
-use super::line::DelayLine;
-use crate::linear::crossing::Direction;
+use super::line::{DelayLine, Passage};
+use crate::linear::crossing::{Crossing, Direction};
 use crate::linear::stable_delays::{StableInterval, signed_distance};
 
 /// A change of the number of unstable roots along the delays.
@@ -20,54 +20,59 @@ pub struct Change {
 /// All changes of a line by growing delay, without end where there are crossings.
 #[derive(Debug, Clone)]
 pub struct Changes<'l> {
-    line: &'l DelayLine,
     /// The next delay of each crossing.
-    next: BinaryHeap<Reverse<Next>>,
-    passed: bool,
+    next: BinaryHeap<Reverse<Next<'l>>>,
+    /// The passage of a real root, as long as it lies ahead.
+    passage: Option<Passage>,
 }
 
 /// The next delay of one of a line's crossings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Next {
+struct Next<'l> {
     tau: f64,
-    crossing: usize,
+    /// The place of the crossing among those of the line.
+    place: usize,
+    crossing: &'l Crossing,
     branch: u64,
 }
 
-impl Eq for Next {}
+impl Eq for Next<'_> {}
 
-impl Ord for Next {
+impl Ord for Next<'_> {
     /// By delay. At one delay crossings of higher frequency are first.
     fn cmp(&self, other: &Self) -> Ordering {
         let by_delay = self.tau.total_cmp(&other.tau);
-        by_delay.then(self.crossing.cmp(&other.crossing))
+        by_delay.then(self.place.cmp(&other.place))
     }
 }
 
-impl PartialOrd for Next {
+impl PartialOrd for Next<'_> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
 impl<'l> Changes<'l> {
-    /// The changes from the delay `tau` on.
-    pub(super) fn from(line: &'l DelayLine, tau: f64) -> Self {
-        let crossings = line.crossings.iter().enumerate();
-        let moving = crossings.filter(|(_, c)| c.direction != Direction::Touch);
-        let next = moving.map(|(crossing, c)| {
-            let branch = c.branch_at(tau);
-            let tau = c.delay(branch);
+    /// The changes at `crossings`, by falling frequency, and at the passage of a real root.
+    pub(in crate::linear) fn from(
+        crossings: impl Iterator<Item = &'l Crossing>,
+        passage: Option<Passage>,
+    ) -> Self {
+        let moving = crossings
+            .enumerate()
+            .filter(|(_, c)| c.direction != Direction::Touch);
+        let next = moving.map(|(place, crossing)| {
+            let branch = crossing.branch_at(0.0);
             Reverse(Next {
-                tau,
+                tau: crossing.delay(branch),
+                place,
                 crossing,
                 branch,
             })
         });
         Self {
-            line,
             next: next.collect(),
-            passed: line.passage.is_none_or(|p| p.tau < tau),
+            passage: passage.filter(|p| p.tau >= 0.0),
         }
     }
 }
@@ -77,10 +82,9 @@ impl Iterator for Changes<'_> {
 
     fn next(&mut self) -> Option<Change> {
         let next = self.next.peek_mut();
-        let passage = self.line.passage.filter(|_| !self.passed);
-        match (next, passage) {
+        match (next, self.passage) {
             (next, Some(passage)) if next.as_ref().is_none_or(|n| passage.tau <= n.0.tau) => {
-                self.passed = true;
+                self.passage = None;
                 Some(Change {
                     tau: passage.tau,
                     by: passage.change,
@@ -91,8 +95,8 @@ impl Iterator for Changes<'_> {
                     tau,
                     crossing,
                     branch,
+                    ..
                 }) = *next;
-                let crossing = &self.line.crossings[crossing];
                 next.0.branch = branch + 1;
                 next.0.tau = crossing.delay(branch + 1);
                 Some(Change {
@@ -193,7 +197,7 @@ impl DelayLine {
     /// The changes of the number of unstable roots with τ > 0, by growing delay.
     #[must_use]
     pub fn changes(&self) -> Changes<'_> {
-        Changes::from(self, 0.0)
+        Changes::from(self.crossings.iter(), self.passage)
     }
 
     /// The delays at which no root is unstable, by growing delay; none where a root lies on the

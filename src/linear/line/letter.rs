@@ -3,8 +3,8 @@
 use super::{Intervals, Line, Roots};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::count::{Count, MarginalTolerance};
-use crate::linear::crossing::{Crossing, Crossings, Direction};
-use crate::linear::general::stable::Change;
+use crate::linear::crossing::{Crossing, Crossings};
+use crate::linear::general::stable::{Change, Changes};
 use crate::linear::general::{RightOf, Spectrum};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::stable_delays::StableDelays;
@@ -77,20 +77,7 @@ impl Line for Crossings {
     }
 
     fn changes(&self) -> Box<dyn Iterator<Item = Change> + '_> {
-        let moving = self.iter().filter(|c| c.direction != Direction::Touch);
-        let mut next: Vec<(&Crossing, u64)> = moving.map(|c| (c, c.first_branch)).collect();
-        Box::new(std::iter::from_fn(move || {
-            let delay = |(crossing, branch): &(&Crossing, u64)| crossing.delay(*branch);
-            let first = next
-                .iter_mut()
-                .min_by(|a, b| delay(a).total_cmp(&delay(b)))?;
-            let tau = delay(first);
-            first.1 += 1;
-            Some(Change {
-                tau,
-                by: 2 * first.0.direction.sign(),
-            })
-        }))
+        Box::new(Changes::from(self.iter(), None))
     }
 
     fn stable_intervals(&self) -> Box<dyn Intervals + '_> {
