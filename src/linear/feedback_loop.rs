@@ -40,15 +40,36 @@ pub struct FeedbackLoop {
     load: Polynomial,
     /// V₀ L_a.
     velocity: Polynomial,
-    /// L_a, and L_a L_v L_s.
-    lag_of_load: Polynomial,
-    all_lags: Polynomial,
+    /// L_a, L_v and L_a L_v L_s.
+    passing: LagPolynomials,
     /// b of the letter's friction.
     slope: Option<f64>,
     a_v: f64,
     a_n: f64,
     channel: Channel,
     lags: Lags,
+}
+
+/// Lags as polynomials in λ.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LagPolynomials {
+    /// L_a.
+    pub load: Polynomial,
+    /// L_v.
+    pub velocity: Polynomial,
+    /// L_a L_v L_s.
+    pub all: Polynomial,
+}
+
+impl LagPolynomials {
+    pub(super) fn of(lags: &Lags) -> Self {
+        let [load, velocity, sensor] = lags.times().map(|time| polynomial(&[1.0, time]));
+        Self {
+            load,
+            velocity,
+            all: times(&times(&load, &velocity), &sensor),
+        }
+    }
 }
 
 /// Derivatives of D with respect to the dimensionless groups.
@@ -120,14 +141,12 @@ impl FeedbackLoop {
     /// A loop with the gains a_v and a_n.
     #[must_use]
     pub fn new(friction: Friction, a_v: f64, a_n: f64, channel: Channel, lags: Lags) -> Self {
-        let [of_load, of_velocity, of_sensor] = lags.times().map(|time| polynomial(&[1.0, time]));
-        let all_lags = times(&times(&of_load, &of_velocity), &of_sensor);
+        let passing = LagPolynomials::of(&lags);
         Self {
-            open: times(&friction.open, &all_lags),
-            load: times(&friction.load, &of_velocity),
-            velocity: times(&friction.velocity, &of_load),
-            lag_of_load: of_load,
-            all_lags,
+            open: times(&friction.open, &passing.all),
+            load: times(&friction.load, &passing.velocity),
+            velocity: times(&friction.velocity, &passing.load),
+            passing,
             slope: friction.slope,
             a_v,
             a_n,
@@ -158,7 +177,7 @@ impl FeedbackLoop {
         match self.slope {
             Some(b) => system.known_by(Source {
                 groups: Groups::new(b, self.a_v, self.a_n),
-                lags: self.lags.times(),
+                lags: self.lags,
             }),
             None => system,
         }
@@ -176,8 +195,8 @@ impl FeedbackLoop {
         };
         // ∂B/∂b = λ L_a L_v L_s and ∂V/∂b = L_a.
         let of_slope = || {
-            let open = lambda * at(&self.all_lags) * remembered;
-            open - self.a_v * at(&self.lag_of_load) * acting
+            let open = lambda * at(&self.passing.all) * remembered;
+            open - self.a_v * at(&self.passing.load) * acting
         };
         PerGroup {
             b: self.slope.map_or(Complex64::ZERO, |_| of_slope()),

@@ -1,7 +1,7 @@
 //! What B and A of the controlled oscillator are made of.
 
 use super::polynomial::Precise;
-use crate::model::Groups;
+use crate::model::{Groups, Lags};
 
 /// The numbers that B and A come from:
 ///
@@ -15,8 +15,8 @@ use crate::model::Groups;
 pub struct Source {
     /// b, a_v and a_n.
     pub groups: Groups,
-    /// T_a, T_v and T_s ≥ 0: the lags of the load, of the pulling velocity and of the sensor.
-    pub lags: [f64; 3],
+    /// T_a, T_v and T_s.
+    pub lags: Lags,
 }
 
 impl Source {
@@ -29,7 +29,7 @@ impl Source {
     /// B and A.
     pub(super) fn polynomials(&self) -> [Precise; 2] {
         let Groups { b, a_v, a_n } = self.groups;
-        let [load, velocity, sensor] = self.lags.map(|time| Precise::new([1.0, time]));
+        let [load, velocity, sensor] = self.lags.times().map(|time| Precise::new([1.0, time]));
         let lags = load.product(&velocity).product(&sensor);
         let by_load = velocity.product(&Precise::new([a_n]));
         let by_velocity = load.product(&Precise::new([b, 1.0]));

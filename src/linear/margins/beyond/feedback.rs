@@ -4,8 +4,8 @@ use num_complex::Complex64;
 
 use crate::linear::MarginalTolerance;
 use crate::linear::characteristic::one_minus_exp;
-use crate::linear::feedback_loop::{FeedbackLoop, polynomial, times};
-use crate::linear::general::{DelayLine, Polynomial, RightOf, RootCounter};
+use crate::linear::feedback_loop::{FeedbackLoop, LagPolynomials};
+use crate::linear::general::{DelayLine, RightOf, RootCounter};
 use crate::linear::stable_delays::StableInterval;
 use crate::model::elementary::ln;
 use crate::model::{Channel, Groups, Lags};
@@ -19,25 +19,9 @@ pub struct Beyond {
     pub lags: Lags,
 }
 
-/// The lags as polynomials in λ.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LagPolynomials {
-    /// L_a.
-    pub load: Polynomial,
-    /// L_v.
-    pub velocity: Polynomial,
-    /// L_a L_v L_s.
-    pub all: Polynomial,
-}
-
 impl Beyond {
     pub(super) fn lag_polynomials(&self) -> LagPolynomials {
-        let [load, velocity, sensor] = self.lags.times().map(|time| polynomial(&[1.0, time]));
-        LagPolynomials {
-            load,
-            velocity,
-            all: times(&times(&load, &velocity), &sensor),
-        }
+        LagPolynomials::of(&self.lags)
     }
 
     /// The loop of these groups, (1) and (2) of `beyond`.
