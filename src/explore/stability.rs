@@ -4,14 +4,13 @@ use serde::Serialize;
 
 use super::finite;
 use super::margin_kind::{MarginKind, sign};
-use super::stable_line::{Latencies, MOST_INTERVALS, ends};
+use super::stable_line::{Latencies, ends};
 use crate::linear::Direction;
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
 use crate::linear::general::{self as linear, RightOf};
 use crate::linear::line::{Linear, Roots};
 use crate::linear::newton::Root;
-use crate::linear::stable_delays::StableInterval;
 use crate::model::stop::Stop;
 
 /// Stability of a linear model at a delay.
@@ -171,9 +170,7 @@ impl Stability {
         let found = roots.spectrum(at, wanted.roots.into());
         let line = &*roots.line(time_unit);
         let count = roots.count(tau, time_unit);
-        let mut intervals = line.stable_intervals();
-        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        let truncated = intervals.next().is_some() || intervals.gave_up();
+        let (stable, truncated) = ends(&mut *line.stable_intervals());
         let delays_known = line.delays_known() && !(stable.is_empty() && truncated);
         let delay_margin = line.delay_margin(tau);
         let first = line.changes().next();
@@ -186,7 +183,7 @@ impl Stability {
             marginal: count.is_some_and(|count| count.marginal)
                 || found.reason == Some(Reason::RootAtOrigin),
             reason: found.reason.map(Reason::name),
-            stable_delays: delays_known.then(|| ends(&stable)),
+            stable_delays: delays_known.then_some(stable),
             stable_delays_truncated: delays_known && truncated,
             delay_margin: finite(delay_margin),
             delay_margin_kind: MarginKind::of(delay_margin),

@@ -4,11 +4,12 @@ use serde::Serialize;
 
 use super::finite;
 use crate::linear::general::{DelayLine, System};
+use crate::linear::line::Intervals;
 use crate::linear::stable_delays::StableInterval;
 
 /// The most stable intervals. Near a tangency there can be millions; the answer says if some are
 /// left out.
-pub(super) const MOST_INTERVALS: usize = 100_000;
+const MOST_INTERVALS: usize = 100_000;
 
 /// What there is to know of the latencies of the feedback at one delay.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -35,20 +36,19 @@ impl Latencies {
         };
         let margin = line.latency_margin();
         let line = line.in_physical_time(time_unit);
-        let mut intervals = line.stable_intervals();
-        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        let (stable, truncated) = ends(&mut line.stable_intervals());
         Self {
-            stable_latencies: Some(ends(&stable)),
-            stable_latencies_truncated: margin.is_nan()
-                || intervals.next().is_some()
-                || intervals.gave_up(),
+            stable_latencies: Some(stable),
+            stable_latencies_truncated: margin.is_nan() || truncated,
             margin: Some(margin * time_unit),
         }
     }
 }
 
-/// The ends of stable intervals; the end of the last one is none where it has none.
-pub(super) fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
-    let ends = |s: &StableInterval| [Some(s.from), finite(s.to)];
-    intervals.iter().map(ends).collect()
+/// The ends of stable intervals, and whether some are left out; the end of the last interval is
+/// none where it has none.
+pub(super) fn ends(mut intervals: &mut dyn Intervals) -> (Vec<[Option<f64>; 2]>, bool) {
+    let ends = |s: StableInterval| [Some(s.from), finite(s.to)];
+    let first = (&mut intervals).take(MOST_INTERVALS).map(ends).collect();
+    (first, intervals.next().is_some() || intervals.gave_up())
 }
