@@ -11,7 +11,7 @@ use slipmap::critical::along_delay::{BLOCK, critical_velocities};
 use slipmap::critical::limit::CoulombLimit;
 use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
 use slipmap::critical::{
-    CriticalVelocity, GRAZE_PRECISION, Method, Options, Problem, RampOptions, Regime, Transition,
+    CriticalVelocity, GRAZE_PRECISION, Method, Problem, RampOptions, Regime, Transition,
     by_simulation, critical_velocity,
 };
 use slipmap::model::stop::Stop;
@@ -23,13 +23,7 @@ mod chance_problem;
 use chance_problem::Chance;
 
 fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
-    Problem {
-        law,
-        velocity_unit: 1.0,
-        feedback: Feedback::new(alpha_v, alpha_n, tau),
-        stop: Stop::default(),
-        options: Options::default(),
-    }
+    Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
 }
 
 fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {

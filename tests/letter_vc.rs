@@ -2,10 +2,9 @@
 //! sweeps.
 
 use slipmap::critical::limit::CoulombLimit;
-use slipmap::critical::{CriticalVelocity, Options, Problem, critical_velocity};
+use slipmap::critical::{CriticalVelocity, Problem, critical_velocity};
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::rightmost::Rightmost;
-use slipmap::model::stop::Stop;
 use slipmap::model::{Feedback, FrictionLaw};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
@@ -185,13 +184,8 @@ fn stick_over_slip(problem: &Problem, v0: f64) -> f64 {
 }
 
 fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
-    Problem {
-        law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
-        velocity_unit: 1.0,
-        feedback: Feedback::new(alpha_v, alpha_n, tau),
-        stop: Stop::default(),
-        options: Options::default(),
-    }
+    let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+    Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
 }
 
 /// "As a rule of thumb we found that in the case of pure velocity control the sticking time has to
@@ -222,13 +216,8 @@ fn velocity_control_needs_short_sticks() {
 
 /// Coulomb friction of the letter's Fig. 4, μ_K/μ_S = 0.5, under load control with this γ.
 fn coulomb(gamma: f64, tau: f64) -> Problem {
-    Problem {
-        law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
-        velocity_unit: 1.0,
-        feedback: Feedback::new(0.0, -2.0 * gamma / (0.5 * tau), tau),
-        stop: Stop::default(),
-        options: Options::default(),
-    }
+    let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
+    Problem::new(law, Feedback::new(0.0, -2.0 * gamma / (0.5 * tau), tau))
 }
 
 /// v_c = 0 from γ = 1 on holds as the delay vanishes. At finite delays it is back at the longer

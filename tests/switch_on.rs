@@ -6,8 +6,7 @@
 use std::path::Path;
 
 use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
-use slipmap::critical::{Options, Problem, Regime};
-use slipmap::model::stop::Stop;
+use slipmap::critical::{Problem, Regime};
 use slipmap::model::{Feedback, FrictionLaw, Oscillator, Table};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
@@ -123,13 +122,7 @@ fn trials_tell_every_fate_of_the_reference() {
 }
 
 fn problem(law: FrictionLaw, (alpha_v, alpha_n): (f64, f64), tau: f64) -> Problem {
-    Problem {
-        law,
-        velocity_unit: 1.0,
-        feedback: Feedback::new(alpha_v, alpha_n, tau),
-        stop: Stop::default(),
-        options: Options::default(),
-    }
+    Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
 }
 
 fn survival(problem: &Problem, phase: f64, v0: f64) -> Regime {

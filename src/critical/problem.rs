@@ -26,6 +26,19 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// The problem of this law and this feedback where M = κ = N0 = 1, with the options that all
+    /// searches have.
+    #[must_use]
+    pub fn new(law: FrictionLaw, feedback: Feedback) -> Self {
+        Self {
+            law,
+            velocity_unit: 1.0,
+            feedback,
+            stop: Stop::default(),
+            options: Options::default(),
+        }
+    }
+
     /// A motion's parameters at `v0`, with control from `switch_on` on.
     #[must_use]
     pub fn at(&self, v0: f64, switch_on: f64) -> Parameters {

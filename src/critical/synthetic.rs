@@ -3,24 +3,17 @@
 //! letter.
 
 use super::event_functions::{Event, MOST_SLIPS};
-use super::options::{ContinuationOptions, Options};
+use super::options::ContinuationOptions;
 use super::problem::Problem;
 use super::regime::{Followed, Observation, Regime, Response};
 use super::return_map::{Cycle, NoReturn, Period, ReturnMap, Stop};
-use crate::model::stop::Stop as StopFlag;
 use crate::model::{Feedback, FrictionLaw};
 use crate::slip::motion::{Accuracy, Stretch};
 use crate::slip::outcome::{Outcome, Summary};
 
 /// A problem with M = κ = N0 = μ_S = 1.
 pub(super) fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
-    Problem {
-        law,
-        velocity_unit: 1.0,
-        feedback: Feedback::new(alpha_v, alpha_n, tau),
-        stop: StopFlag::default(),
-        options: Options::default(),
-    }
+    Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
 }
 
 /// A problem with M = κ = N0 = μ_S = 1 and the friction law of the letter's Fig. 3.

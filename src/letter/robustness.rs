@@ -5,7 +5,7 @@ use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
 use super::measures::{Measure, linear_measures};
 use super::workshop::{Source, Workshop, column, source};
-use crate::critical::{Options, Problem, critical_velocity};
+use crate::critical::{Problem, critical_velocity};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
 use crate::model::{Feedback, FrictionLaw};
@@ -38,12 +38,10 @@ const VC_ERROR: f64 = 1e-4;
 
 /// The letter's friction law under control.
 fn letters(alpha_v: f64, alpha_n: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
+    let law = FrictionLaw::weakening(0.5, 0.5, 1.0)?;
     Ok(Problem {
-        law: FrictionLaw::weakening(0.5, 0.5, 1.0)?,
-        velocity_unit: 1.0,
-        feedback: Feedback::new(alpha_v, alpha_n, tau),
         stop: stop.clone(),
-        options: Options::default(),
+        ..Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
     })
 }
 

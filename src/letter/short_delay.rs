@@ -4,7 +4,7 @@ use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
 use super::workshop::{Source, Workshop, column, source};
 use crate::critical::limit::{CoulombLimit, LimitCell};
-use crate::critical::{Options, Problem, critical_velocity};
+use crate::critical::{Problem, critical_velocity};
 use crate::linear::Crossings;
 use crate::model::stop::Stop;
 use crate::model::{Feedback, FrictionLaw, Groups};
@@ -24,12 +24,10 @@ const GAMMAS: [f64; 6] = [0.05, 0.15, 0.3, 0.55, 0.7, 0.85];
 
 /// The oscillator of Fig. 4 at a delay, with M = κ = N0 = μ_S = 1, so that ṽ = 1/2.
 fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
+    let feedback = Feedback::new(0.0, -2.0 * gamma / (RATIO * tau), tau);
     Ok(Problem {
-        law: FrictionLaw::coulomb(RATIO, 1.0)?,
-        velocity_unit: 1.0,
-        feedback: Feedback::new(0.0, -2.0 * gamma / (RATIO * tau), tau),
         stop: stop.clone(),
-        options: Options::default(),
+        ..Problem::new(FrictionLaw::coulomb(RATIO, 1.0)?, feedback)
     })
 }
 

@@ -1,7 +1,6 @@
 //! Problems of critical velocities by chance, for tests and benches alike.
 
-use slipmap::critical::{Options, Problem};
-use slipmap::model::stop::Stop;
+use slipmap::critical::Problem;
 use slipmap::model::{Feedback, FrictionLaw, Table};
 
 #[path = "chance.rs"]
@@ -44,12 +43,6 @@ impl Chance {
             1.0..2.0 => (alpha_v, 0.0),
             _ => (0.5 * alpha_v, alpha_n),
         };
-        Problem {
-            law,
-            velocity_unit: 1.0,
-            feedback: Feedback::new(alpha_v, alpha_n, tau),
-            stop: Stop::default(),
-            options: Options::default(),
-        }
+        Problem::new(law, Feedback::new(alpha_v, alpha_n, tau))
     }
 }

@@ -2,8 +2,7 @@
 //! step sizes.
 
 use slipmap::critical::switch_on::{Phase, Trials};
-use slipmap::critical::{self, CriticalVelocity, Options, Problem, Regime, critical_velocity};
-use slipmap::model::stop::Stop;
+use slipmap::critical::{self, CriticalVelocity, Problem, Regime, critical_velocity};
 use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
@@ -186,16 +185,11 @@ pub(crate) fn end(found: &CriticalVelocity) -> End {
 
 /// The problem of a setting with M = κ = N0 = 1.
 pub(crate) fn problem(setting: &Setting) -> Problem {
-    Problem {
-        law: friction_law(&setting.friction),
-        velocity_unit: 1.0,
-        feedback: Feedback::new(setting.alpha_v, setting.alpha_n, setting.tau).through(Channel {
-            memory: setting.memory,
-            latency: setting.latency,
-        }),
-        stop: Stop::default(),
-        options: Options::default(),
-    }
+    let feedback = Feedback::new(setting.alpha_v, setting.alpha_n, setting.tau).through(Channel {
+        memory: setting.memory,
+        latency: setting.latency,
+    });
+    Problem::new(friction_law(&setting.friction), feedback)
 }
 
 fn friction_law(friction: &Friction) -> FrictionLaw {

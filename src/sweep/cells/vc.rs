@@ -2,7 +2,7 @@
 
 use crate::critical::switch_on::{self, Phase, Scan, Trials, Windows};
 use crate::critical::{
-    CriticalVelocity, CriticalWindows, Method, Options, Problem, RampOptions, Regime, Transition,
+    CriticalVelocity, CriticalWindows, Method, Problem, RampOptions, Regime, Transition,
     along_delay, by_simulation, critical_velocity,
 };
 use crate::linear::MarginalTolerance;
@@ -53,11 +53,8 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
         tau > 0.0 || !feedback.gains.act(),
     )?;
     let problem = Problem {
-        law,
         velocity_unit: units.velocity,
-        feedback: feedback.dimensionless(&oscillator),
-        stop: Stop::default(),
-        options: Options::default(),
+        ..Problem::new(law, feedback.dimensionless(&oscillator))
     };
     Ok(Asked { problem, units })
 }
@@ -454,13 +451,8 @@ mod tests {
     /// or the end of the range.
     #[test]
     fn whatever_ends_a_window_it_counts() {
-        let problem = Problem {
-            law: FrictionLaw::coulomb(0.5, 2.0).unwrap(),
-            velocity_unit: 1.0,
-            feedback: Feedback::new(0.0, 0.0, 1.0),
-            stop: Stop::default(),
-            options: Options::default(),
-        };
+        let law = FrictionLaw::coulomb(0.5, 2.0).unwrap();
+        let problem = Problem::new(law, Feedback::new(0.0, 0.0, 1.0));
         let units = CaseUnits {
             time: 1.0,
             length: 3.0,
