@@ -6,7 +6,7 @@ use super::system::{Evaluation, Undefined};
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
-use crate::model::{Channel, Feedback, Groups, Lags, ModelError};
+use crate::model::{Channel, Feedback, Groups, Lags, ModelError, Oscillator};
 
 /// Why a setting has no linear model, or no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -73,9 +73,15 @@ impl Setting {
             &Parameter::BEYOND_LETTER,
             "0 in what is known of the letter's own feedback alone",
         )?;
+        self.with_groups()
+            .map(|(groups, of)| (groups, of.time_unit()))
+    }
+
+    /// The dimensionless groups of the block, and the oscillator by which they are measured.
+    fn with_groups(&self) -> Result<(Groups, Oscillator), ModelError> {
         let oscillator = self.oscillator()?;
         let groups = oscillator.groups(self.sliding_point()?, self.control());
-        Ok((groups, oscillator.time_unit()))
+        Ok((groups, oscillator))
     }
 
     /// The feedback loop about steady sliding, dimensionless.
@@ -83,14 +89,17 @@ impl Setting {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn feedback_loop(&self) -> Result<FeedbackLoop, ModelError> {
-        let oscillator = self.oscillator()?;
-        let Groups { b, a_v, a_n } = oscillator.groups(self.sliding_point()?, self.control());
+        let (groups, oscillator) = self.with_groups()?;
+        Ok(self.loop_around(groups, &oscillator))
+    }
+
+    fn loop_around(&self, Groups { b, a_v, a_n }: Groups, by: &Oscillator) -> FeedbackLoop {
         let friction = match self.rate_and_state() {
-            Some(law) => Friction::of_state(law.groups(&oscillator, self.get(Parameter::V0))),
+            Some(law) => Friction::of_state(law.groups(by, self.get(Parameter::V0))),
             None => Friction::of_slope(b),
         };
-        let Feedback { channel, lags, .. } = self.feedback().dimensionless(&oscillator);
-        Ok(FeedbackLoop::new(friction, a_v, a_n, channel, lags))
+        let Feedback { channel, lags, .. } = self.feedback().dimensionless(by);
+        FeedbackLoop::new(friction, a_v, a_n, channel, lags)
     }
 
     /// Whether the linear model is the same at all delays. It is not where the polynomials of a
@@ -131,15 +140,13 @@ impl Setting {
     /// # Errors
     /// As [`Setting::linear`].
     pub fn linear_in(&self, scratch: &mut Evaluation) -> Result<(Linear, f64), NoAnswer> {
-        let system = match self.system_in(scratch) {
-            Some(system) => return Ok((Linear::General(Box::new(system?)), 1.0)),
-            None if self.is_of_letter() => None,
-            None => Some(self.feedback_loop()?.system()),
-        };
-        let oscillator = self.oscillator()?;
-        let model = match system {
-            Some(system) => Linear::General(Box::new(system)),
-            None => Linear::Letter(oscillator.groups(self.sliding_point()?, self.control())),
+        if let Some(system) = self.system_in(scratch) {
+            return Ok((Linear::General(Box::new(system?)), 1.0));
+        }
+        let (groups, oscillator) = self.with_groups()?;
+        let model = match self.is_of_letter() {
+            true => Linear::Letter(groups),
+            false => Linear::General(Box::new(self.loop_around(groups, &oscillator).system())),
         };
         Ok((model, oscillator.time_unit()))
     }
