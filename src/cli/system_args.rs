@@ -84,7 +84,8 @@ impl SystemArgs {
         self.set.iter().any(|set| set.name == name)
     }
 
-    /// As [`SystemArgs::read`], but the delay need not be given; it is NaN then.
+    /// The system at a setting whose delay need not be given, and is NaN then; none without a
+    /// system. `flag` as in [`SystemArgs::read`].
     pub(super) fn read_but_delay(
         &self,
         flag: impl Fn(Parameter) -> Option<f64>,

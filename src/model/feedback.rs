@@ -72,7 +72,7 @@ impl Feedback {
         }
     }
 
-    /// The same feedback with this memory and latency.
+    /// This feedback through a channel with memory and latency.
     #[must_use]
     pub fn through(self, channel: Channel) -> Self {
         Self { channel, ..self }
@@ -96,7 +96,7 @@ impl Feedback {
         self.tau / (1.0 - memory.abs()) + latency
     }
 
-    /// The same feedback in the units of `oscillator`: times in √(M/κ), α_v in its inverse, α_N in
+    /// This feedback in the units of `oscillator`: times in √(M/κ), α_v in its inverse, α_N in
     /// κ.
     #[must_use]
     pub fn dimensionless(&self, oscillator: &Oscillator) -> Self {

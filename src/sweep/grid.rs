@@ -58,8 +58,8 @@ pub struct TooLarge {
 
 impl Grid {
     /// Computes all of `plan` on `threads` threads, or on this one where `threads` is at most 1.
-    /// All cells are in memory at once. Once it is asked to stop it ends as [`engine::run`] does;
-    /// this thread alone checks that between pieces and, where cells take long, between cells.
+    /// All cells are in memory at once. Asked to stop, several threads end as [`engine::run`] does,
+    /// and this one between pieces and, where cells take long, between cells.
     ///
     /// # Errors
     /// When the system cannot provide the memory, a parameter is outside the model's range, the

@@ -2,7 +2,6 @@
 //! the command line.
 
 use crate::critical::switch_on::Phase;
-use crate::model::Control;
 use crate::sweep::input::command::{command_line, point_command, vc_command};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
@@ -45,7 +44,7 @@ impl CellTexts {
             };
         }
         let has = |parameter| !setting.get(parameter).is_nan();
-        let uncontrolled = setting.control() == Control::default();
+        let uncontrolled = !setting.control().act();
         let delay = has(Parameter::Tau);
         let slides = setting.law().is_none() || has(Parameter::V0);
         let law = setting.law().is_some();

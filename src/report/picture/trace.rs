@@ -9,7 +9,6 @@ use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
 use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
-use crate::model::Control;
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
 use crate::sweep::cells::trace::{Sample, TraceEvent};
@@ -115,7 +114,7 @@ fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
 /// The time from which the block's velocity stays within 1 % of v0; NaN if it never does.
 fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
     // Without control the time counts from the start.
-    let controlled = spec.setting.control() != Control::default();
+    let controlled = spec.setting.control().act();
     let switched_on = Some(spec.case.switch_on).filter(|t| controlled && t.is_finite());
     switched_on.unwrap_or(0.0) + trace.summary.settle_time
 }

@@ -186,7 +186,7 @@ fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
     Ok(Letter { fixed, gain })
 }
 
-/// The same setting where what is searched acts.
+/// A copy of `setting` in which what is searched acts.
 fn acting(setting: &Setting, searched: &Quantity) -> Setting {
     let mut acting = setting.clone();
     acting.vary(searched, 1.0);

@@ -40,7 +40,6 @@ use super::setting::Setting;
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::toml_reader::{Entry, SpecError, entries, parse};
 use super::units::Units;
-use crate::model::Control;
 use crate::slip::case::{Case, CaseError};
 
 /// Samples per step if the file gives no number.
@@ -241,7 +240,7 @@ impl Draft {
         };
         self.given.check_motions()?;
         let mut setting = self.given.setting();
-        let optional = (setting.control() == Control::default()).then_some(Parameter::Tau);
+        let optional = (!setting.control().act()).then_some(Parameter::Tau);
         self.given.check(optional.as_slice(), Some(&law_place))?;
         if setting.get(Parameter::Tau).is_nan() {
             setting.set(Parameter::Tau, 0.0);

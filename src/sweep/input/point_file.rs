@@ -24,7 +24,6 @@ use super::setting::Setting;
 use super::toml_reader::{SpecError, entries, parse};
 use super::units::Units;
 use super::vc_keys::VcKeys;
-use crate::model::Control;
 
 /// What a point is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +134,7 @@ fn check_critical_of(given: &GivenParameters, setting: &mut Setting) -> Result<(
         }
     }
     let mut optional = vec![Parameter::V0];
-    if setting.control() == Control::default() {
+    if !setting.control().act() {
         optional.push(Parameter::Tau);
     }
     given.check(&optional, given.law_place())?;

@@ -225,7 +225,7 @@ impl Setting {
     /// Without gains, memory and latency have no effect and do not count.
     #[must_use]
     pub(super) fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
-        let idle = self.control() == Control::default();
+        let idle = !self.control().act();
         let left_aside = |p: Parameter| idle && matches!(p, Parameter::Memory | Parameter::Latency);
         let mut of = of.iter().copied();
         of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
@@ -374,7 +374,7 @@ impl Setting {
     /// Whether a delay is given but has no effect, because both gains are 0.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
-        let idle = self.system().is_none() && self.control() == Control::default();
+        let idle = self.system().is_none() && !self.control().act();
         idle && self.get(Parameter::Tau) > 0.0
     }
 
