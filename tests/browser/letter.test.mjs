@@ -77,7 +77,7 @@ test("every claim leads to what is behind it, also by keyboard, and scripts are 
   }
   await page.locator("a[href='#velocity_limit']").first().focus();
   await page.keyboard.press("Enter");
-  assert.ok(page.url().endsWith("#velocity_limit"));
+  await page.waitForURL(/#velocity_limit$/);
   const limit = await page.locator("#velocity_limit").innerText();
   assert.match(limit, /-0\.725635939603/);
   assert.match(limit, /-0\.68/);
