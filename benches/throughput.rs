@@ -23,10 +23,11 @@ use std::time::Instant;
 
 use slipmap::maps::maker::{Job, make, make_in_memory};
 use slipmap::model::stop::Stop;
+use slipmap::setting::SweepSpec;
+use slipmap::sweep::Plan;
 use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Attended;
-use slipmap::sweep::{Plan, SweepSpec};
 
 const ROUNDS: usize = 5;
 

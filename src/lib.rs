@@ -12,11 +12,14 @@
 //!
 //! | module | what it holds | feature |
 //! |---|---|---|
+//! | [`text`] | numbers in messages, suggestions for names, TOML with places | |
 //! | [`model`] | the oscillator, friction laws, dimensionless groups | |
 //! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane | |
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
 //! | [`critical`] | the critical velocity below which stick-slip survives | |
-//! | [`sweep`] | sweep files, plans, the engine that computes maps | `sweep` |
+//! | [`setting`] | parameters, fields, laws, units, settings, the files that name them | `sweep` |
+//! | [`answers`] | margins, best settings, motions, critical velocities of a setting | `sweep` |
+//! | [`sweep`] | plans, the engine that computes maps, what a map says | `sweep` |
 //! | [`explore`] | requests about a point or a plane, as plain data | `explore` |
 //! | [`store`] | map and trace files | `store` |
 //! | [`maps`] | from a plan to its map; checks and display of maps | `store` |
@@ -24,7 +27,7 @@
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //! | [`letter`] | every claim of the letter, computed again | `cli` |
 //!
-//! `cli`, the default, includes all features. With `default-features = false` the first four
+//! `cli`, the default, includes all features. With `default-features = false` the first five
 //! modules remain, without libhdf5 and without a C compiler.
 //!
 //! # Example
@@ -55,6 +58,9 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Git revision of the source of this library and of the program.
 pub const REVISION: &str = env!("SLIPMAP_GIT_REVISION");
 
+#[cfg(feature = "sweep")]
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
+pub mod answers;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
 #[cfg(doc)]
@@ -78,6 +84,9 @@ pub mod report;
 mod revision;
 #[cfg(feature = "serve")]
 pub mod serve;
+#[cfg(feature = "sweep")]
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
+pub mod setting;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod slip;
 #[cfg(feature = "store")]
@@ -86,3 +95,4 @@ pub mod store;
 #[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod sweep;
+pub mod text;

@@ -12,13 +12,14 @@ use std::sync::Arc;
 use map::write;
 use program::{Folder, err, expect, out};
 use serde_json::Value;
+use slipmap::answers::basin::{STUDENT_95, UNSEEN_95};
 use slipmap::explore::basin::{BasinShare, Followed};
+use slipmap::setting::{Field, SweepSpec};
 use slipmap::slip::outcome::Outcome;
-use slipmap::sweep::cells::basin::{STUDENT_95, UNSEEN_95};
+use slipmap::sweep::Plan;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::{Field, Plan, SweepSpec};
 
 const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const FLAGS: [&str; 6] = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];

@@ -9,11 +9,12 @@ use std::path::Path;
 use program::{Folder, err, expect, out};
 use serde_json::Value;
 use slipmap::model::{Feedback, FrictionLaw};
+use slipmap::setting::SweepSpec;
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
 use slipmap::slip::outcome::{Limits, Outcome};
 use slipmap::slip::watch::{REPEATED, follow};
-use slipmap::sweep::{Plan, SweepSpec};
+use slipmap::sweep::Plan;
 
 #[path = "common/map.rs"]
 mod map;
@@ -137,7 +138,7 @@ fn case_of(plan: &Plan, mut cell: usize) -> String {
     }
     let setting = plan.setting(&index);
     let (mut fixed, mut start) = (String::new(), String::new());
-    for p in slipmap::sweep::Parameter::ALL {
+    for p in slipmap::setting::Parameter::ALL {
         if setting.uses(p) && !p.of_friction_law() {
             let table = if p.of_start() { &mut start } else { &mut fixed };
             *table += &format!("{} = {:?}\n", p.name(), setting.get(p));

@@ -12,12 +12,13 @@ use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::model::stop::Stop;
+use slipmap::setting::field::Storage;
+use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::{Field, Parameter, Setting, SweepSpec};
+use slipmap::sweep::Plan;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::input::field::Storage;
-use slipmap::sweep::input::law_kind::{Formula, LawKind};
-use slipmap::sweep::{Field, Parameter, Plan, Setting, SweepSpec};
 
 const TABLES: [(&str, &str); 4] = [
     ("etdas", include_str!("reference/general_etdas.csv")),

@@ -7,9 +7,10 @@ mod walk;
 use std::sync::Arc;
 
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use slipmap::setting::SweepSpec;
+use slipmap::sweep::Plan;
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::{Plan, SweepSpec};
 use walk::Walk;
 
 /// Gains of velocity control and delays, with the abscissas there.

@@ -10,10 +10,11 @@ use std::path::Path;
 
 use every_kind::{SWEEPS, plan};
 use hdf5::{Attribute, Dataset, Location};
+use slipmap::answers::Trace;
+use slipmap::setting::CaseSpec;
 use slipmap::store::{Output, trace_file};
 use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::described::{Described, Element, Group, Value, Variable};
-use slipmap::sweep::{CaseSpec, Trace};
 
 /// What a file adds when its cells are known, and how HDF5 stores dimensions.
 const ADDED: [&str; 14] = [

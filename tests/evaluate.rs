@@ -7,11 +7,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use every_kind::{SWEEPS, plan};
+use slipmap::setting::Field;
 use slipmap::sweep::cells::buffers::TileBuffers;
 use slipmap::sweep::evaluate::{Points, Wanted, evaluate};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::{Field, Plan, RunError};
+use slipmap::sweep::{Plan, RunError};
 
 /// The bits of all columns from a cell on.
 fn bits(cells: &TileBuffers, at: usize, count: usize) -> Vec<Vec<u64>> {

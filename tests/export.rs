@@ -203,7 +203,7 @@ fn kinds_are_words_and_what_there_is_not_is_empty() {
     let table = exported(&folder, &["map.h5"]);
     let file = File::open(folder.path().join("map.h5")).unwrap();
     let kinds = file.dataset("outcome").unwrap().read_raw::<u8>().unwrap();
-    let names = slipmap::sweep::Field::Outcome.kinds().unwrap();
+    let names = slipmap::setting::Field::Outcome.kinds().unwrap();
     let expected: Vec<&str> = kinds.iter().map(|&kind| names[usize::from(kind)]).collect();
     assert_eq!(table.column("outcome"), expected);
     assert_eq!(table.bits("settle_time"), numbers(&file, "settle_time"));

@@ -10,7 +10,8 @@ use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use slipmap::sweep::{Field, Parameter, Plan, SweepSpec};
+use slipmap::setting::{Field, Parameter, SweepSpec};
+use slipmap::sweep::Plan;
 
 #[global_allocator]
 static ALLOCATOR: memory::Capped = memory::Capped;

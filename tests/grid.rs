@@ -8,10 +8,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use slipmap::linear::Crossings;
+use slipmap::setting::{Field, SweepSpec};
 use slipmap::store::MapFile;
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::grid::Grid;
-use slipmap::sweep::{Event, Field, Observer, Plan, RunError, SweepSpec};
+use slipmap::sweep::{Event, Observer, Plan, RunError};
 
 const SWEEP: &str = "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = true\nbest = true\n[axes]\n\
     mu_prime = [-0.1, -0.3]\nalpha_n = { from = -3.0, to = 1.0, points = 61 }\n\

@@ -1,19 +1,20 @@
 //! The letter's statements about stick-slip under control, as tests on coarse grids of the shipped
 //! sweeps.
 
+use slipmap::answers::vc;
 use slipmap::critical::limit::CoulombLimit;
 use slipmap::critical::{CriticalVelocity, Problem, critical_velocity};
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::model::{Feedback, FrictionLaw};
+use slipmap::setting::regime_at_v0::RegimeAtV0;
+use slipmap::setting::search::Protocol;
+use slipmap::setting::{Parameter, SweepSpec};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::{Outcome, Summary};
-use slipmap::sweep::cells::vc;
-use slipmap::sweep::input::regime_at_v0::RegimeAtV0;
-use slipmap::sweep::input::search::Protocol;
-use slipmap::sweep::{Parameter, Plan, SweepSpec};
+use slipmap::sweep::Plan;
 
 const FIG3B: &str = include_str!("../sweeps/velocity_at_fig3b.toml");
 const ROBUST_VELOCITY: &str = include_str!("../sweeps/robust_velocity.toml");

@@ -7,7 +7,8 @@ mod program;
 use program::{Folder, err, expect, out};
 use serde_json::Value;
 use slipmap::model::stop::Stop;
-use slipmap::sweep::{Field, Plan, SweepSpec};
+use slipmap::setting::{Field, SweepSpec};
+use slipmap::sweep::Plan;
 
 /// μ_K/μ_S, γ, v_c/ṽ, ω0 T, lift-off.
 fn reference() -> Vec<[f64; 5]> {

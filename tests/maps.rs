@@ -12,9 +12,10 @@ use slipmap::linear::curves::StableSide;
 use slipmap::linear::general::{RightOf, RootCounter};
 use slipmap::linear::status::MARGINAL;
 use slipmap::model::stop::Stop;
+use slipmap::setting::{Field, Parameter};
 use slipmap::store::MapFile;
-use slipmap::sweep::cells::best::{best_of_plane, best_plane};
-use slipmap::sweep::{Field, Parameter, Plan, engine};
+use slipmap::sweep::cells::best_planes::{best_of_plane, best_plane};
+use slipmap::sweep::{Plan, engine};
 
 #[path = "common/map.rs"]
 mod map;
@@ -525,7 +526,7 @@ fn towards(side: StableSide) -> Option<(f64, f64)> {
 }
 
 /// All roots lie left of −`sigma`.
-fn decays(setting: &slipmap::sweep::Setting, sigma: f64) -> bool {
+fn decays(setting: &slipmap::setting::Setting, sigma: f64) -> bool {
     let (model, unit) = setting.linear().unwrap();
     let tau = setting.get(Parameter::Tau) / unit;
     RootCounter::new(&model.system()).right_of(tau, -sigma * unit) == RightOf::Roots(0)
@@ -609,7 +610,7 @@ fn boundaries_of_any_plane() {
 }
 
 /// Computes a map in memory and calls `visit` with the parameters and the count of every cell.
-fn cells(text: &str, mut visit: impl FnMut(&slipmap::sweep::Setting, u16)) {
+fn cells(text: &str, mut visit: impl FnMut(&slipmap::setting::Setting, u16)) {
     let plan = plan(text);
     let mut worker = engine::Worker::new(&plan);
     let strides = plan.tiles.strides();

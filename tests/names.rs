@@ -9,10 +9,12 @@ mod program;
 use std::collections::BTreeSet;
 
 use program::{Folder, err, expect, out};
+use slipmap::setting::SweepSpec;
+use slipmap::setting::map_names;
 use slipmap::store::MapFile;
+use slipmap::sweep::Plan;
 use slipmap::sweep::described::group_names::other_names;
-use slipmap::sweep::input::map_names;
-use slipmap::sweep::{Plan, SpecError, SweepSpec};
+use slipmap::text::SpecError;
 
 /// A sweep of a system with the parameters `first` and `second`; the latter spans the planes of
 /// curves with the delay.

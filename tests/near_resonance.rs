@@ -22,8 +22,8 @@ use slipmap::linear::stable_delays::StableInterval;
 use slipmap::linear::{Count, MarginalTolerance};
 use slipmap::model::Channel;
 use slipmap::model::stop::Stop;
-use slipmap::sweep::input::system::SystemModel;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::setting::system::SystemModel;
+use slipmap::setting::{Parameter, Setting};
 
 /// Delays farther from a change than this, relative, are not marginal.
 const NEAR: f64 = 1e-8;

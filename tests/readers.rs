@@ -14,7 +14,7 @@ use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{CERTIFIED, FLAGS, MARGINAL};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{FrictionLaw, Groups};
-use slipmap::sweep::input::axis::{Spacing, spaced};
+use slipmap::setting::axis::{Spacing, spaced};
 use tempfile::TempDir;
 
 /// The groups of a cell and its unit of time, from the values of the axes.

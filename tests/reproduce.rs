@@ -14,8 +14,8 @@ use program::{Folder, LONGEST, Started, err, expect, out};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use slipmap::linear::lobes::LobeControl;
+use slipmap::setting::Field;
 use slipmap::store::{MapFile, TraceFile};
-use slipmap::sweep::Field;
 
 /// A quick run with everything kept, and one on one thread for people.
 struct Runs {

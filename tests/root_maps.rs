@@ -7,10 +7,11 @@ use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::stop::Stop;
+use slipmap::setting::field::Storage;
+use slipmap::setting::{Field, Parameter, Setting};
 use slipmap::store::MapFile;
-use slipmap::sweep::input::field::Storage;
 use slipmap::sweep::plan::BLOCK_OF_DELAYS;
-use slipmap::sweep::{Field, Parameter, Plan, Setting, engine};
+use slipmap::sweep::{Plan, engine};
 
 #[path = "common/map.rs"]
 mod map;

@@ -39,9 +39,10 @@ use slipmap::linear::Crossings;
 use slipmap::linear::status::{CERTIFIED, MARGINAL, SAMPLED};
 use slipmap::maps::maker::make_in_memory;
 use slipmap::model::Groups;
+use slipmap::setting::Field;
 use slipmap::store::MapFile;
+use slipmap::sweep::Plan;
 use slipmap::sweep::described::root::Provenance;
-use slipmap::sweep::{Field, Plan};
 
 const SMALL: &str = "title = \"Small\"\nboundaries = true\n[axes]\nmu_prime = [-0.1, -0.2, -0.5]\n\
     alpha_v = { from = -1.2, to = 0.1, points = 60 }\ntau = { from = 0.05, to = 9.0, points = 70, \

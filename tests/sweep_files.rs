@@ -1,8 +1,9 @@
 //! Sweep files: what is understood, and that every mistake is pointed at.
 
 use slipmap::linear::MarginalTolerance;
-use slipmap::sweep::input::law_kind::{Formula, LawKind};
-use slipmap::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec};
+use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::{CaseSpec, Field, Parameter, SweepSpec};
+use slipmap::sweep::Plan;
 
 const GOOD: &str = "\
 title = \"all of it\"

@@ -8,11 +8,12 @@ use std::path::Path;
 use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
 use slipmap::critical::{Problem, Regime};
 use slipmap::model::{Feedback, FrictionLaw, Oscillator, Table};
+use slipmap::setting::Field;
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::Outcome;
-use slipmap::sweep::{Field, Plan};
+use slipmap::sweep::Plan;
 
 #[path = "common/map.rs"]
 mod map;

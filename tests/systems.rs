@@ -770,11 +770,11 @@ fn h5py_reads_a_map_of_turning() {
     let output = program::output(&mut python);
     assert!(output.status.success(), "{}", err(&output));
     let read: Value = serde_json::from_str(&out(&output)).unwrap();
-    let system: slipmap::sweep::input::system::SystemModel =
+    let system: slipmap::setting::system::SystemModel =
         read["system"].as_str().unwrap().parse().unwrap();
     assert_eq!(
         Some(system),
-        slipmap::sweep::input::system::shipped::system("turning")
+        slipmap::setting::system::shipped::system("turning")
     );
     assert_eq!(read["dims"], serde_json::json!(["/width", "/tau"]));
     assert_eq!(read["about"], "chip width over stiffness");

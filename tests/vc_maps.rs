@@ -14,11 +14,12 @@ use serde_json::Value;
 use slipmap::critical::GRAZE_PRECISION;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use slipmap::model::stop::Stop;
+use slipmap::setting::field::OUTCOMES;
+use slipmap::setting::{Field, Parameter, SweepSpec};
 use slipmap::store::MapFile;
 use slipmap::store::source::InMemory;
 use slipmap::sweep::events::Attended;
-use slipmap::sweep::input::field::OUTCOMES;
-use slipmap::sweep::{Field, Parameter, Plan, RunError, SweepSpec, Todo, engine};
+use slipmap::sweep::{Plan, RunError, Todo, engine};
 
 #[path = "common/map.rs"]
 mod map;

@@ -14,9 +14,10 @@ use map::edit;
 use program::{Folder, expect, out};
 use slipmap::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::maps::check::{Effort, Program, check};
+use slipmap::setting::Field;
 use slipmap::store::MapFile;
+use slipmap::sweep::Plan;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
-use slipmap::sweep::{Field, Plan};
 
 const DECAY: &str = "fields = [\"n_unstable\", \"abscissa\", \"frequency\"]\n[axes]\nmu_prime = [-0.3, -0.1]\n\
                      alpha_n = { from = -3, to = 1, points = 23 }\ntau = { from = 0, to = 9, points = 31 }\n\

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use slipmap::sweep::Setting;
-use slipmap::sweep::input::units::Units;
+use slipmap::setting::Setting;
+use slipmap::setting::units::Units;
 
 use super::json::Inputs;
 

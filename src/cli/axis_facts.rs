@@ -1,9 +1,9 @@
 //! The facts of an axis, printed alike for a sweep and for a map.
 
 use serde::Serialize;
-use slipmap::model::Shown;
 use slipmap::report::numbers::grouped;
-use slipmap::sweep::input::quantity::Quantity;
+use slipmap::setting::quantity::Quantity;
+use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 /// An axis by its parameter: its number of values, the first and the last.

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use slipmap::explore::basin::{BasinError, BasinShare, Followed};
-use slipmap::model::Shown;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::table::write_starts;
+use slipmap::setting::basin::{Basin, Over};
+use slipmap::setting::point_file::PointOf;
+use slipmap::setting::simulation::Simulation;
+use slipmap::setting::units::Units;
+use slipmap::setting::{Parameter, Setting};
 use slipmap::slip::case::CaseError;
-use slipmap::sweep::input::basin::{Basin, Over};
-use slipmap::sweep::input::point_file::PointOf;
-use slipmap::sweep::input::simulation::Simulation;
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::text::Shown;
 
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};

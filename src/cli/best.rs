@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
+use slipmap::answers::best::{Ranges, best_settings, default_ranges, robust_setting};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
 use slipmap::explore::vc::CriticalVelocity;
+use slipmap::model::ModelError;
 use slipmap::model::stop::Stop;
-use slipmap::model::{ModelError, Shown};
-use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_setting};
-use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::input::quantity::Quantity;
-use slipmap::sweep::input::search::Protocol;
-use slipmap::sweep::input::simulation::NOT_IN_MOTIONS;
-use slipmap::sweep::input::system::SystemModel;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::setting::quantity::Quantity;
+use slipmap::setting::search::Protocol;
+use slipmap::setting::simulation::NOT_IN_MOTIONS;
+use slipmap::setting::system::SystemModel;
+use slipmap::setting::{Parameter, Setting};
+use slipmap::text::Shown;
+use slipmap::text::nearest::did_you_mean;
 
 use super::asked::Asked;
 use super::asks::AtAnyDelay;

@@ -1,11 +1,11 @@
 //! What `slipmap best` prints with `--json`.
 
 use serde::Serialize;
+use slipmap::answers::best::{BestRegion, Ranges, RobustSetting};
 use slipmap::explore::margins::Margins;
 use slipmap::explore::point::{Point, SystemPoint};
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::Optimum;
-use slipmap::sweep::cells::best::{BestRegion, Ranges, RobustSetting};
 use slipmap::sweep::relaxation_time;
 use utoipa::ToSchema;
 

@@ -5,7 +5,7 @@ use std::io::Write;
 use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
 use slipmap::linear::best::Optimum;
 use slipmap::report::numbers::{counted, rounded, unit_behind};
-use slipmap::sweep::{Field, Parameter};
+use slipmap::setting::{Field, Parameter};
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;

@@ -2,10 +2,11 @@
 //! trace.
 
 use serde::Serialize;
-use slipmap::model::{Control, Shown};
+use slipmap::model::Control;
 use slipmap::report::numbers::grouped;
+use slipmap::setting::{CaseSpec, Parameter};
 use slipmap::slip::case::Start;
-use slipmap::sweep::{CaseSpec, Parameter};
+use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::failure::Failure;

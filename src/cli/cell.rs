@@ -5,17 +5,18 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use slipmap::maps::look::as_text::CellTexts;
-use slipmap::model::Shown;
 use slipmap::report::numbers::unit_behind;
+use slipmap::setting::axis::{Axis, nearest};
+use slipmap::setting::basin::Basin;
+use slipmap::setting::point_file::{PointOf, PointSpec};
+use slipmap::setting::quantity::Quantity;
+use slipmap::setting::simulation::Simulation;
+use slipmap::setting::{Parameter, Setting};
 use slipmap::store::MapFile;
 use slipmap::store::tiles::Survey;
-use slipmap::sweep::input::axis::{Axis, nearest};
-use slipmap::sweep::input::basin::Basin;
-use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::input::quantity::Quantity;
-use slipmap::sweep::input::simulation::Simulation;
-use slipmap::sweep::{Parameter, Plan, Setting};
+use slipmap::sweep::Plan;
+use slipmap::text::Shown;
+use slipmap::text::nearest::did_you_mean;
 
 use super::failure::Failure;
 use super::open::tell_partial;

@@ -7,10 +7,10 @@ use std::sync::atomic::AtomicBool;
 use clap::ValueEnum;
 use slipmap::report::numbers::grouped;
 use slipmap::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
+use slipmap::setting::Field;
 use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::Field;
 use slipmap::sweep::described::trace::{QUANTITIES, Quantity};
-use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::text::nearest::did_you_mean;
 
 use super::cell::{At, parse_at, place_on};
 use super::failure::Failure;

@@ -3,10 +3,11 @@
 use std::process::ExitCode;
 
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use slipmap::model::{ModelError, Shown};
+use slipmap::model::ModelError;
+use slipmap::setting::linear_model::NoAnswer;
 use slipmap::store::StoreError;
-use slipmap::sweep::SpecError;
-use slipmap::sweep::input::linear_model::NoAnswer;
+use slipmap::text::Shown;
+use slipmap::text::SpecError;
 
 use super::excerpt::excerpt;
 use super::kind::Kind;

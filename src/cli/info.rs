@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use serde::Serialize;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
-use slipmap::model::Shown;
 use slipmap::report::numbers::{bytes, counted, grouped, short, unit_behind};
+use slipmap::setting::Field;
 use slipmap::store::{MapAxis, MapFile, trace_reader};
-use slipmap::sweep::Field;
 use slipmap::sweep::described::schema::root;
+use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;

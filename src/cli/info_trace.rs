@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use serde::Serialize;
+use slipmap::answers::trace::EVENTS;
 use slipmap::report::numbers::{grouped, short};
+use slipmap::setting::units::Units;
 use slipmap::slip::outcome::Summary;
 use slipmap::store::TraceFile;
-use slipmap::sweep::cells::trace::EVENTS;
 use slipmap::sweep::described::trace::QUANTITIES;
-use slipmap::sweep::input::units::Units;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;

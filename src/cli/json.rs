@@ -7,10 +7,10 @@ use std::io::Write;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use slipmap::report::visible::visible_json;
-use slipmap::sweep::input::law_kind::LawKind;
-use slipmap::sweep::input::setting_text::of_point;
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::setting::law_kind::LawKind;
+use slipmap::setting::setting_text::of_point;
+use slipmap::setting::units::Units;
+use slipmap::setting::{Parameter, Setting};
 use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 

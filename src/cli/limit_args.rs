@@ -1,8 +1,8 @@
 //! The flags for a point of the limit of a short delay.
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use slipmap::sweep::Parameter;
-use slipmap::sweep::input::parameter::Group;
+use slipmap::setting::Parameter;
+use slipmap::setting::parameter::Group;
 
 use super::parameter_values::Values;
 

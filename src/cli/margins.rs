@@ -5,11 +5,11 @@ use std::io::Write;
 use slipmap::explore::margins::{Margin, Margins, StabilityBox};
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Stability, Wanted};
-use slipmap::model::Shown;
 use slipmap::model::stop::Stop;
 use slipmap::report::numbers::{counted, rounded, unit_behind};
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::setting::units::Units;
+use slipmap::setting::{Parameter, Setting};
+use slipmap::text::Shown;
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema};

@@ -2,12 +2,13 @@
 
 use std::io::Write;
 
-use slipmap::model::Shown;
+use slipmap::answers::Trace;
 use slipmap::report::numbers::{grouped, unit_behind};
+use slipmap::setting::units::Units;
+use slipmap::setting::{CaseSpec, Field};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{CaseSpec, Field, Trace};
+use slipmap::text::Shown;
 
 use super::output::tell_dimensionless;
 

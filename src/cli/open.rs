@@ -5,11 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use slipmap::maps::assembly::{Missing, assemble};
 use slipmap::report::numbers::grouped;
+use slipmap::setting::{Field, Parameter};
 use slipmap::store::output::hidden_beside;
 use slipmap::store::tiles::{TileReader, shards};
 use slipmap::store::{MapFile, Output};
-use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::{Field, Parameter};
+use slipmap::text::nearest::did_you_mean;
 
 use super::failure::Failure;
 use super::output::provenance;

@@ -7,9 +7,9 @@ use std::time::SystemTime;
 use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
 use slipmap::report::picture;
+use slipmap::setting::units::Units;
 use slipmap::sweep::Plan;
 use slipmap::sweep::described::root::Provenance;
-use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
 use super::say;

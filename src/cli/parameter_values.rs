@@ -1,8 +1,8 @@
 //! The values that flags give to parameters.
 
 use clap::{Arg, ArgMatches};
-use slipmap::sweep::Parameter;
-use slipmap::sweep::input::parameter::Group;
+use slipmap::setting::Parameter;
+use slipmap::setting::parameter::Group;
 
 /// The values that flags give to parameters; each parameter has a flag in its row.
 #[derive(Debug, Clone)]

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use slipmap::model::{ModelError, Shown};
-use slipmap::sweep::Parameter;
-use slipmap::sweep::input::law_kind::{Formula, LawKind, NO_MOTIONS};
-use slipmap::sweep::input::parameter::Group;
-use slipmap::sweep::input::setting::Setting;
-use slipmap::sweep::input::simulation::NOT_IN_MOTIONS;
-use slipmap::sweep::input::units::Units;
+use slipmap::model::ModelError;
+use slipmap::setting::Parameter;
+use slipmap::setting::law_kind::{Formula, LawKind, NO_MOTIONS};
+use slipmap::setting::parameter::Group;
+use slipmap::setting::simulation::NOT_IN_MOTIONS;
+use slipmap::setting::units::Units;
+use slipmap::setting::values::Setting;
+use slipmap::text::Shown;
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;

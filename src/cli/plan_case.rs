@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use slipmap::answers::trace::MOST_SAMPLES;
 use slipmap::report::numbers::{bytes, grouped};
-use slipmap::sweep::CaseSpec;
-use slipmap::sweep::cells::trace::MOST_SAMPLES;
+use slipmap::setting::CaseSpec;
+use slipmap::setting::case_file::Sampling;
 use slipmap::sweep::described::trace::BYTES_OF_A_SAMPLE;
-use slipmap::sweep::input::case_file::Sampling;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;

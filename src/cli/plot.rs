@@ -8,9 +8,9 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use slipmap::report::picture::{
     self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
 };
+use slipmap::setting::Field;
+use slipmap::setting::quantity::Quantity;
 use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::Field;
-use slipmap::sweep::input::quantity::Quantity;
 
 use super::cell::{At, parse_at};
 use super::failure::Failure;

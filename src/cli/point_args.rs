@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use slipmap::sweep::Parameter;
-use slipmap::sweep::input::point_file::PointOf;
+use slipmap::setting::Parameter;
+use slipmap::setting::point_file::PointOf;
 
 use super::asked::Asked;
 use super::cell::{CellArgs, alone};

@@ -5,10 +5,11 @@ use std::io::Write;
 use slipmap::explore::margin_kind::MarginKind;
 use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
 use slipmap::explore::stability::{Spectrum, Stability};
-use slipmap::model::Shown;
 use slipmap::report::numbers::unit_behind;
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
+use slipmap::setting::units::Units;
+use slipmap::setting::{Field, Parameter, Setting};
+use slipmap::sweep::relaxation_time;
+use slipmap::text::Shown;
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;

@@ -2,12 +2,12 @@
 
 use clap::ValueEnum;
 use serde::Serialize;
+use slipmap::answers::best::{BestSettings, Ranges, RobustSetting};
 use slipmap::explore::point::Point;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::SearchedGain;
-use slipmap::sweep::Parameter;
-use slipmap::sweep::cells::best::{BestSettings, Ranges, RobustSetting};
-use slipmap::sweep::input::quantity::Quantity;
+use slipmap::setting::Parameter;
+use slipmap::setting::quantity::Quantity;
 use utoipa::ToSchema;
 
 use super::asked::Asked;

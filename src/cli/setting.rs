@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
+use slipmap::setting::Setting;
+use slipmap::setting::point_file::{PointOf, PointSpec};
+use slipmap::setting::setting_text::setting_text;
+use slipmap::setting::units::Units;
 use slipmap::store::{Output, StoreError, regular};
-use slipmap::sweep::Setting;
-use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::input::setting_text::setting_text;
-use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
 use super::output::{warn_beyond_curve, warn_of_idle_delay};

@@ -6,9 +6,9 @@ use std::path::Path;
 use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
+use slipmap::setting::Parameter;
+use slipmap::setting::quantity::Quantity;
 use slipmap::store::{MapFile, Output, StoreError};
-use slipmap::sweep::Parameter;
-use slipmap::sweep::input::quantity::Quantity;
 
 use super::colours::Colours;
 use super::failure::Failure;

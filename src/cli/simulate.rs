@@ -3,18 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use slipmap::answers::Trace;
+use slipmap::answers::trace::TraceError;
 use slipmap::explore::motion::MotionSummary;
-use slipmap::model::Shown;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::table::write_samples;
+use slipmap::setting::setting_text::setting_text;
+use slipmap::setting::simulation::DISTURBED;
+use slipmap::setting::{CaseSpec, Parameter};
 use slipmap::store::{Output, StoreError, trace_file, trace_reader};
-use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::described::trace::QUANTITIES;
-use slipmap::sweep::input::setting_text::setting_text;
-use slipmap::sweep::input::simulation::DISTURBED;
-use slipmap::sweep::{CaseSpec, Parameter, Trace};
+use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::asks::OfStickSlip;

@@ -5,13 +5,15 @@ use std::path::Path;
 
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
+use slipmap::setting::case_file::{TextKind, is_case_file};
+use slipmap::setting::friction_table::table_of_law;
+use slipmap::setting::point_file::{PointOf, PointSpec};
+use slipmap::setting::system::SystemModel;
+use slipmap::setting::table_file::{Inlined, NotInlined};
+use slipmap::setting::{CaseSpec, SweepSpec};
 use slipmap::store::regular::{self, NotRead};
-use slipmap::sweep::input::case_file::{TextKind, is_case_file};
-use slipmap::sweep::input::friction_table::table_of_law;
-use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::input::system::SystemModel;
-use slipmap::sweep::input::table_file::{Inlined, NotInlined};
-use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
+use slipmap::sweep::Plan;
+use slipmap::text::SpecError;
 
 use super::failure::Failure;
 use super::kind::Kind;

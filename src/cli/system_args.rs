@@ -4,11 +4,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use slipmap::model::Shown;
-use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::input::quantity::Quantity;
-use slipmap::sweep::input::system::{SystemModel, shipped};
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::setting::quantity::Quantity;
+use slipmap::setting::system::{SystemModel, shipped};
+use slipmap::setting::{Parameter, Setting};
+use slipmap::text::Shown;
+use slipmap::text::nearest::did_you_mean;
 
 use super::asked::Asked;
 use super::failure::Failure;

@@ -9,10 +9,10 @@ use slipmap::critical::switch_on::Phase;
 use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
 use slipmap::model::stop::Stop;
 use slipmap::report::numbers::{bound, rounded, unit_behind};
-use slipmap::sweep::input::point_file::PointOf;
-use slipmap::sweep::input::search::{self, PHASES};
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Field, Parameter, Setting};
+use slipmap::setting::point_file::PointOf;
+use slipmap::setting::search::{self, PHASES};
+use slipmap::setting::units::Units;
+use slipmap::setting::{Field, Parameter, Setting};
 
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};

@@ -8,8 +8,8 @@ use crate::linear::crossing::Crossing;
 use crate::linear::line::Line;
 use crate::linear::stable_delays::StableInterval;
 use crate::model::stop::Stop;
-use crate::sweep::input::linear_model::NoAnswer;
-use crate::sweep::{Parameter, Setting};
+use crate::setting::linear_model::NoAnswer;
+use crate::setting::{Parameter, Setting};
 
 /// The line reaches at least to the end of this many stable intervals. Near a tangency there can be
 /// millions.
@@ -126,7 +126,7 @@ fn steps(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::input::point_file::{PointOf, PointSpec};
+    use crate::setting::point_file::{PointOf, PointSpec};
 
     fn along(fixed: &str) -> AlongDelay {
         let point = PointSpec::read(&format!("[fixed]\n{fixed}"), PointOf::Sliding).unwrap();

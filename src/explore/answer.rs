@@ -17,10 +17,11 @@ use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
 use crate::model::stop::Stop;
-use crate::sweep::input::command::{point_command, vc_command};
-use crate::sweep::input::point_file::{PointOf, PointSpec};
+use crate::setting::CaseSpec;
+use crate::setting::command::{point_command, vc_command};
+use crate::setting::point_file::{PointOf, PointSpec};
+use crate::sweep::Plan;
 use crate::sweep::plan::memory;
-use crate::sweep::{CaseSpec, Plan};
 
 /// Number of roots in the answer for a point.
 pub const ROOTS: u8 = 16;

@@ -5,13 +5,13 @@ use std::convert::Infallible;
 use serde::Serialize;
 
 use super::finite;
+use crate::answers::basin::{Asked, Place, Region, STUDENT_95, Tally};
+use crate::setting::Setting;
+use crate::setting::basin::{Basin, SCRAMBLINGS};
+use crate::setting::simulation::Simulation;
 use crate::slip::case::CaseError;
 use crate::slip::outcome::Outcome;
-use crate::sweep::Setting;
-use crate::sweep::cells::basin::{Asked, Place, Region, STUDENT_95, Tally};
 use crate::sweep::engine::{RunError, each};
-use crate::sweep::input::basin::{Basin, SCRAMBLINGS};
-use crate::sweep::input::simulation::Simulation;
 
 /// Why there is no share.
 #[derive(Debug, thiserror::Error)]

@@ -4,11 +4,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::linear::curves::CurvePiece;
+use crate::setting::SweepSpec;
+use crate::sweep::Plan;
 use crate::sweep::engine::RunError;
 use crate::sweep::events::Attended;
 use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::plan::memory::Memory;
-use crate::sweep::{Plan, SpecError, SweepSpec};
+use crate::text::SpecError;
 
 /// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 1 << 20;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::chart::{Chart, ChartCurve};
 use super::encoded::{Array, Arrays};
-use crate::sweep::input::field::Storage;
+use crate::setting::field::Storage;
 
 /// What a chart says before its numbers.
 #[derive(Debug, Serialize)]

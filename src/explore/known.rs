@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::sweep::input::law_kind::{Formula, LawKind};
-use crate::sweep::input::units::Units;
-use crate::sweep::{Field, Parameter};
+use crate::setting::law_kind::{Formula, LawKind};
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter};
 
 /// All tables.
 #[derive(Debug, Clone, Serialize)]

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::finite;
 use crate::model::{FrictionLaw, ModelError};
-use crate::sweep::Parameter;
-use crate::sweep::input::law_kind::LawKind;
-use crate::sweep::input::point_file::PointSpec;
+use crate::setting::Parameter;
+use crate::setting::law_kind::LawKind;
+use crate::setting::point_file::PointSpec;
 
 /// Number of speeds on a curve.
 const SPEEDS: u32 = 201;
@@ -117,7 +117,7 @@ fn last_speed(law: &FrictionLaw, v0: Option<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::input::point_file::PointOf;
+    use crate::setting::point_file::PointOf;
 
     fn curve(text: &str) -> LawCurve {
         LawCurve::of(&PointSpec::read(text, PointOf::Law).unwrap()).unwrap()

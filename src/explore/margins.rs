@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::finite;
 use super::stability::Stability;
+use crate::answers::margins::Around;
 use crate::linear::margins::{Limits, Margins as Search, Radius};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::sweep::cells::margins::Around;
-use crate::sweep::{Parameter, Setting};
+use crate::setting::{Parameter, Setting};
 
 /// Margins of a setting, in its units.
 #[derive(Debug, Clone, Serialize)]

@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
+use crate::answers::Trace;
+use crate::answers::samples::Most;
+use crate::answers::trace::Sample;
+use crate::answers::trace::{TraceError, TraceEvent};
 use crate::model::stop::Stop;
-use crate::sweep::cells::samples::Most;
-use crate::sweep::cells::trace::Sample;
-use crate::sweep::cells::trace::{TraceError, TraceEvent};
-use crate::sweep::{CaseSpec, Trace};
+use crate::setting::CaseSpec;
 
 /// Limits of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

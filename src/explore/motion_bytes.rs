@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::encoded::{Array, Arrays};
 use super::motion::{Followed, MotionSummary};
-use crate::sweep::cells::trace::{MODES, Sample};
+use crate::answers::trace::{MODES, Sample};
 
 /// The command that repeats the motion.
 const SIMULATE: &str = "slipmap simulate case.toml";

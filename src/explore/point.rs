@@ -11,9 +11,9 @@ use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::sweep::input::linear_model::NoAnswer;
-use crate::sweep::input::system::SystemModel;
-use crate::sweep::{Parameter, Setting};
+use crate::setting::linear_model::NoAnswer;
+use crate::setting::system::SystemModel;
+use crate::setting::{Parameter, Setting};
 
 /// Linear stability at a point.
 #[derive(Debug, Clone, Serialize)]

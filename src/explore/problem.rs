@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::chart::ChartError;
 use super::motion::MotionError;
 use crate::model::ModelError;
-use crate::sweep::SpecError;
-use crate::sweep::input::linear_model::NoAnswer;
+use crate::setting::linear_model::NoAnswer;
+use crate::text::SpecError;
 
 /// Why there is no answer; determines the HTTP status and its usual title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

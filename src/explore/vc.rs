@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::finite;
+use crate::answers::vc;
 use crate::critical::limit::LimitCell;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::sweep::Setting;
-use crate::sweep::cells::vc;
-use crate::sweep::input::field::{Field, OUTCOMES, number_of_outcome};
-use crate::sweep::input::search::{LIMIT, Protocol};
-use crate::sweep::input::source::Source;
+use crate::setting::Setting;
+use crate::setting::field::{Field, OUTCOMES, number_of_outcome};
+use crate::setting::search::{LIMIT, Protocol};
+use crate::setting::source::Source;
 
 /// How stick-slip ends, in units of the setting.
 #[derive(Debug, Clone, Serialize)]
@@ -125,7 +125,7 @@ mod schema {
     use utoipa::{PartialSchema, ToSchema};
 
     use super::ShortDelay;
-    use crate::sweep::input::field::Field;
+    use crate::setting::field::Field;
 
     impl ToSchema for ShortDelay {}
 

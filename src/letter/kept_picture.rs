@@ -6,7 +6,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use crate::store::regular;
-use crate::sweep::plan::in_hexadecimal;
+use crate::text::in_hexadecimal;
 
 /// The most bytes of a picture that is looked at.
 const MOST_BYTES: u64 = 1 << 28;

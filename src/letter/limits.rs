@@ -12,7 +12,7 @@ use crate::linear::lobes::{
     LobeControl, has_stable_delay, minimal_negative_load_gain, minimal_positive_load_gain,
 };
 use crate::model::Groups;
-use crate::sweep::Field;
+use crate::setting::Field;
 
 const LOBES: Source = source!("velocity_limit");
 const BRACKET: Source = source!("velocity_limit_bracket");

@@ -40,11 +40,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use crate::answers::trace::TraceError;
 use crate::model::ModelError;
 use crate::report::picture::PictureError;
 use crate::store::StoreError;
-use crate::sweep::cells::trace::TraceError;
-use crate::sweep::{RunError, SpecError};
+use crate::sweep::RunError;
+use crate::text::SpecError;
 pub use claim::{Claim, Value, Verdict};
 pub use page::GENERATOR;
 pub use workshop::{Figure, Workshop};

@@ -3,12 +3,13 @@
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
 use super::workshop::{Source, Workshop, column, source};
+use crate::answers::Trace;
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Crossings, MarginalTolerance};
+use crate::setting::case_file::CaseSpec;
+use crate::setting::{Field, Parameter};
 use crate::slip::outcome::Outcome;
 use crate::store::MapFile;
-use crate::sweep::input::case_file::CaseSpec;
-use crate::sweep::{Field, Parameter, Trace};
 
 const FIG3A: Source = source!("fig3a");
 const FIG3B: Source = source!("fig3b");

@@ -9,10 +9,10 @@ use crate::critical::{Problem, critical_velocity};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
 use crate::model::{Feedback, FrictionLaw};
+use crate::setting::Field;
 use crate::slip::cycle::after_release;
 use crate::slip::motion::Accuracy;
 use crate::store::MapFile;
-use crate::sweep::Field;
 
 const SMOOTH: Source = source!(
     "velocity_smooth",

@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
 use super::workshop::Workshop;
+use crate::answers::best::{best_settings, default_ranges};
 use crate::linear::best::SearchedGain;
 use crate::linear::certificate::UnstableCount;
 use crate::linear::characteristic::{characteristic, unstable_root_bound};
@@ -12,9 +13,8 @@ use crate::linear::newton::Root;
 use crate::linear::spectrum::RootFinder;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
-use crate::sweep::cells::best::{best_settings, default_ranges};
-use crate::sweep::input::best_plane::parameter_of;
-use crate::sweep::{Parameter, Setting};
+use crate::setting::best_plane::parameter_of;
+use crate::setting::{Parameter, Setting};
 
 /// Numbers of settings for the claims on unstable roots, points of a Halton sequence, which fills
 /// the box evenly; the second number is for a quick run.

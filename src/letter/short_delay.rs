@@ -8,7 +8,7 @@ use crate::critical::{Problem, critical_velocity};
 use crate::linear::Crossings;
 use crate::model::stop::Stop;
 use crate::model::{Feedback, FrictionLaw, Groups};
-use crate::sweep::Field;
+use crate::setting::Field;
 
 const FIG4: Source = source!("fig4");
 

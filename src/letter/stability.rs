@@ -6,8 +6,8 @@ use super::one_variable::{Integral, integral};
 use super::workshop::{Source, Workshop, planes, source};
 use crate::linear::Crossings;
 use crate::model::Groups;
+use crate::setting::Field;
 use crate::store::MapFile;
-use crate::sweep::Field;
 
 const FIG2A: Source = source!("fig2a");
 const FIG2B: Source = source!("fig2b");

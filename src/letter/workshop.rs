@@ -9,21 +9,23 @@ use utoipa::ToSchema;
 
 use super::LetterError;
 use super::kept_picture::{is_kept, marked};
+use crate::answers::Trace;
+use crate::answers::samples::Most;
+use crate::answers::trace::MOST_SAMPLES;
 use crate::maps::maker::{self, Job};
 use crate::model::stop::Stop;
 use crate::report::picture::{self, PictureOptions};
+use crate::setting::case_file::is_case_file;
+use crate::setting::quantity::Quantity;
+use crate::setting::{CaseSpec, Field, SweepSpec};
 use crate::store::map_file::Plane;
 use crate::store::tiles::shards;
 use crate::store::trace_reader::case_of;
 use crate::store::{MapFile, Output, regular, trace_file};
-use crate::sweep::cells::samples::Most;
-use crate::sweep::cells::trace::MOST_SAMPLES;
+use crate::sweep::Plan;
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::schema::root;
 use crate::sweep::events::Attended;
-use crate::sweep::input::case_file::is_case_file;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::{CaseSpec, Field, Plan, SweepSpec, Trace};
 
 /// The sweep or case behind a claim.
 #[derive(Debug, Clone, Copy)]

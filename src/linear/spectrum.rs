@@ -12,8 +12,8 @@ use super::cluster::taken_apart;
 use super::collocation::{MOST_NODES, nodes_for};
 use super::equation::Equation;
 use super::newton::{Root, divide, polish};
-use crate::model::Shown;
 use crate::model::elementary::{norm, sqrt};
+use crate::text::Shown;
 
 /// The most attempts at collocation, each with more nodes than the one before.
 const COLLOCATIONS: u32 = 3;

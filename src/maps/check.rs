@@ -2,12 +2,12 @@
 
 use crate::linear::status::{DISAGREE, FLAGS};
 use crate::model::stop::Stop;
+use crate::setting::Field;
 use crate::store::sample::sample;
 use crate::store::soundness::{check_checksums, check_schema, check_seal};
 use crate::store::tiles::RecordEncoder;
 use crate::store::tiles::record::Content;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::Field;
 use crate::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use crate::sweep::described::schema::{STATUS, root};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};

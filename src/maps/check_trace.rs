@@ -2,12 +2,13 @@
 //! bit.
 
 use super::check::Program;
+use crate::answers::Trace;
+use crate::answers::trace::{Sample, TraceEvent};
+use crate::setting::Parameter;
 use crate::store::TraceFile;
-use crate::sweep::cells::trace::{Sample, TraceEvent};
 use crate::sweep::described::root::numbers_of_case;
 use crate::sweep::described::schema::{root, trace};
 use crate::sweep::described::trace::{QUANTITIES, TIME};
-use crate::sweep::{Parameter, Trace};
 
 /// The largest difference allowed if another revision of the program computed the values, as a
 /// share of the largest one of their kind. The same revision gives the same bits.

@@ -38,7 +38,7 @@ pub mod series;
 pub mod stop;
 pub mod table;
 
-pub use error::{ModelError, Shown};
+pub use error::ModelError;
 pub use feedback::{Channel, Feedback, Lags};
 pub use groups::Groups;
 pub use law::FrictionLaw;

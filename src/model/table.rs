@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::Shown;
+use crate::text::Shown;
 
 /// The most points of a table.
 pub const MOST_POINTS: usize = 4096;

@@ -1,14 +1,14 @@
 //! The cells of a picture: each has a value, or a reason why it shows none.
 
 use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use crate::setting::Field;
+use crate::setting::field::OUTCOMES;
+use crate::setting::regime_at_v0::RegimeAtV0;
+use crate::setting::source::Source;
 use crate::slip::outcome::Outcome;
 use crate::store::map_file::Plane;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::Field;
 use crate::sweep::engine::STATUS_FILL;
-use crate::sweep::input::field::OUTCOMES;
-use crate::sweep::input::regime_at_v0::RegimeAtV0;
-use crate::sweep::input::source::Source;
 
 /// Why a cell shows no value. With the first four its value is not known, whatever number the map
 /// has.

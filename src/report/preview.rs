@@ -2,10 +2,10 @@
 
 use super::known::{Gap, Known};
 use super::numbers::short;
+use crate::setting::field::Storage;
+use crate::setting::{Field, Parameter};
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::input::field::Storage;
-use crate::sweep::{Field, Parameter};
 
 /// The most lines of the picture itself; captions take three more.
 const MOST_LINES: usize = 16;

@@ -48,7 +48,7 @@ pub(super) enum Refusal {
 fn random(count: usize) -> io::Result<String> {
     let mut bytes = vec![0; count];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
-    Ok(crate::sweep::plan::in_hexadecimal(&bytes))
+    Ok(crate::text::in_hexadecimal(&bytes))
 }
 
 impl Hosts {

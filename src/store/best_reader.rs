@@ -7,7 +7,7 @@ use super::map_file::MapFile;
 use super::open;
 use super::values::{Number, whole};
 use crate::linear::best::Kind;
-use crate::sweep::Parameter;
+use crate::setting::Parameter;
 use crate::sweep::described::schema::{BEST, best as names};
 use crate::sweep::plan::tile::index_of;
 

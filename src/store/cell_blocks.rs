@@ -5,7 +5,7 @@ use hdf5::SliceOrIndex;
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::map_summary::for_each_piece;
-use crate::sweep::Field;
+use crate::setting::Field;
 use crate::sweep::described::schema::STATUS;
 
 /// Approximate bytes of numbers in memory at once.

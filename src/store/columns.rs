@@ -4,8 +4,8 @@ use super::chunk_layout::ChunkLayout;
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::values::{Chunks, is_of};
+use crate::setting::field::Storage;
 use crate::sweep::described::schema::STATUS;
-use crate::sweep::input::field::Storage;
 use crate::sweep::plan::MOST_TILES;
 
 /// The columns of a map, each open: the fields in the order of [`MapFile::fields`], then the

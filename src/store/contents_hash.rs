@@ -11,7 +11,7 @@ use super::attributes::{numbers, text};
 use super::open;
 use super::values::{for_each_part, is_of};
 use crate::sweep::described::schema::{BEST, BOUNDARIES, CHUNKS_SHA256, CONTENTS_SHA256, root};
-use crate::sweep::plan::in_hexadecimal;
+use crate::text::in_hexadecimal;
 
 /// Attributes that are not hashed: references to places in the file, the checksums, and when the
 /// map was made.

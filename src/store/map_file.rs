@@ -14,18 +14,19 @@ use super::error::StoreError;
 use super::open;
 use super::seal::{self, Seal};
 use super::values::{Chunks, Number, read, whole};
+use crate::setting::axis::{Axis, MOST_POINTS};
+use crate::setting::field::Storage;
+use crate::setting::map_names::MOST_AXES;
+use crate::setting::quantity::Quantity;
+use crate::setting::system::SystemModel;
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter, SweepSpec};
 use crate::sweep::described::schema::{
     self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root,
 };
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::axis::{Axis, MOST_POINTS};
-use crate::sweep::input::field::Storage;
-use crate::sweep::input::map_names::MOST_AXES;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::system::SystemModel;
-use crate::sweep::input::units::Units;
 use crate::sweep::plan::MOST_CELLS;
-use crate::sweep::{Field, Parameter, SpecError, SweepSpec};
+use crate::text::SpecError;
 
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,9 +6,9 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::summary::{FieldSummary, StatusCounts};
 use super::values::Number;
-use crate::sweep::Field;
+use crate::setting::Field;
+use crate::setting::field::Storage;
 use crate::sweep::described::schema::STATUS;
-use crate::sweep::input::field::Storage;
 
 impl MapFile {
     /// The summary of a field's values: from the map's attributes, or from all cells where it has

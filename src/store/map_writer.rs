@@ -29,8 +29,8 @@ use crate::sweep::described::curves::outer_values;
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::schema::{self, BEST, BOUNDARIES, root};
 use crate::sweep::described::{Described, Variable};
-use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::plan::tile::Tile;
+use crate::text::in_hexadecimal;
 
 /// A map that is being written. [`MapWriter::finish`] gives it its final name; dropped before that,
 /// it is removed.

@@ -8,7 +8,7 @@ use hdf5::{Dataset, SliceOrIndex};
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::map_summary::for_each_chunk;
-use crate::sweep::Field;
+use crate::setting::Field;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{mixed, spread};
 

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use sha2::{Digest, Sha256};
 
 use super::regular;
-use crate::sweep::plan::in_hexadecimal;
+use crate::text::in_hexadecimal;
 
 /// The text before the digest.
 const BEFORE: &[u8] = b"\nslipmap map, sha256 of all before this line: ";

@@ -15,7 +15,8 @@ use super::seal::{self, Seal};
 use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
 use crate::sweep::described::schema;
-use crate::sweep::plan::{Plan, in_hexadecimal};
+use crate::sweep::plan::Plan;
+use crate::text::in_hexadecimal;
 
 /// The longest wait for the library's lock on a file. A child process that is being started shares
 /// the lock until it runs its own program.

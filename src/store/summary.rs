@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::attributes::{numbers, one_number, put_numbers};
 use super::values::Number;
 use crate::linear::status::FLAGS;
+use crate::setting::field::{Field, Storage};
 use crate::sweep::cells::buffers::TileBuffers;
 use crate::sweep::described::schema::summary::{
     ACTUAL_RANGE, FINITE_RANGE, FLAG_CELLS, INFINITE, UNFLAGGED, WITHOUT_VALUE,
 };
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::field::{Field, Storage};
 
 /// Summary of a field's values in some cells.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -8,9 +8,10 @@ use super::map_writer::create_file;
 use super::netcdf::Dimensions;
 use super::output::Output;
 use super::variables::{Layout, create, create_group, describe, put_all, write as write_values};
+use crate::answers::Trace;
+use crate::setting::CaseSpec;
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::{self, Described, trace};
-use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.
 const CHUNK: usize = 1 << 13;

@@ -8,11 +8,12 @@ use super::attributes::{one_number, text};
 use super::error::StoreError;
 use super::open;
 use super::values::{Number, whole};
+use crate::answers::Trace;
+use crate::answers::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
+use crate::setting::{CaseSpec, Parameter};
 use crate::slip::outcome::{Outcome, Summary};
-use crate::sweep::cells::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
 use crate::sweep::described::schema::{self, trace};
 use crate::sweep::described::trace::{QUANTITIES, TIME};
-use crate::sweep::{CaseSpec, Parameter, Trace};
 
 /// A trace, read into memory as a whole.
 #[derive(Debug)]

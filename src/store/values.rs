@@ -16,7 +16,7 @@ use hdf5_sys::h5p::H5P_DEFAULT;
 
 use super::chunk_layout::ChunkLayout;
 use super::open::{self, DEFLATE, SHUFFLE};
-use crate::sweep::input::axis::MOST_POINTS;
+use crate::setting::axis::MOST_POINTS;
 
 unsafe extern "C" {
     /// A constant of HDF5 that the binding lacks.

@@ -11,7 +11,6 @@ use rayon::iter::{
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::cells::best::{best_of_plane, best_plane};
 use super::cells::boundaries::{plane, trace_plane};
 pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
 pub use super::cells::worker::Worker;
@@ -21,6 +20,7 @@ use super::plan::pieces::{Piece, Todo};
 pub use super::sink::{Computed, Encode, Sink};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::sweep::cells::best_planes::{best_of_plane, best_plane};
 
 /// Pieces that may wait for the sink, per thread.
 const PIECES_WAITING: usize = 2;

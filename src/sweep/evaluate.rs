@@ -6,19 +6,19 @@ use super::cells::buffers::TileBuffers;
 use super::cells::worker::Worker;
 use super::engine::{RunError, each_attended};
 use super::events::Attended;
-use super::input::axis::Axis;
-use super::input::basin::Basin;
-use super::input::field::Field;
-use super::input::parameter::Parameter;
-use super::input::search::{Protocol, Search};
-use super::input::setting::Setting;
-use super::input::simulation::{DISTURBED, Simulation};
-use super::input::spec::SweepSpec;
-use super::input::toml_reader::SpecError;
-use super::input::units::Units;
 use super::plan::Plan;
 use crate::linear::MarginalTolerance;
 use crate::model::stop::Stop;
+use crate::setting::axis::Axis;
+use crate::setting::basin::Basin;
+use crate::setting::field::Field;
+use crate::setting::parameter::Parameter;
+use crate::setting::search::{Protocol, Search};
+use crate::setting::simulation::{DISTURBED, Simulation};
+use crate::setting::spec::SweepSpec;
+use crate::setting::units::Units;
+use crate::setting::values::Setting;
+use crate::text::SpecError;
 
 /// What is evaluated, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +112,7 @@ pub struct Points<'a> {
 /// use std::sync::Arc;
 /// use slipmap::sweep::evaluate::{Points, Wanted, evaluate};
 /// use slipmap::sweep::events::Attended;
-/// use slipmap::sweep::{Field, Parameter, Setting};
+/// use slipmap::setting::{Field, Parameter, Setting};
 ///
 /// let of = |alpha_v| {
 ///     let numbers = [("mu_prime", -0.3), ("alpha_v", alpha_v)];

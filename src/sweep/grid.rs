@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::cells::best::BestSettings;
 use super::cells::boundaries::BoundaryPlane;
 use super::cells::buffers::TileBuffers;
 use super::engine::{self, Computed, Encode, RunError, Sink};
@@ -10,6 +9,7 @@ use super::events::Attended;
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
 use super::plan::tile::{for_each_index, memory_strides, place_of};
+use crate::answers::best::BestSettings;
 
 /// All values of a sweep in memory.
 ///
@@ -17,7 +17,8 @@ use super::plan::tile::{for_each_index, memory_strides, place_of};
 /// use std::sync::Arc;
 /// use slipmap::sweep::events::Attended;
 /// use slipmap::sweep::grid::Grid;
-/// use slipmap::sweep::{Plan, SweepSpec};
+/// use slipmap::setting::SweepSpec;
+/// use slipmap::sweep::Plan;
 ///
 /// let sweep: SweepSpec = "
 /// fields = [\"n_unstable\", \"abscissa\"]

@@ -1,9 +1,9 @@
 //! Where the computed pieces of a sweep go.
 
-use super::cells::best::BestSettings;
 use super::cells::boundaries::BoundaryPlane;
 use super::cells::buffers::TileBuffers;
 use super::plan::pieces::Piece;
+use crate::answers::best::BestSettings;
 
 /// The place where pieces go. Encoding happens on the computing threads, writing on the thread that
 /// called [`run`](super::engine::run).

@@ -1,6 +1,7 @@
 //! Small sweeps of every kind.
 
-use slipmap::sweep::{Plan, SweepSpec};
+use slipmap::setting::SweepSpec;
+use slipmap::sweep::Plan;
 
 pub(crate) const SWEEPS: [&str; 7] = [
     "fields = [\"n_unstable\", \"abscissa\", \"delay_margin\"]\nboundaries = true\n\

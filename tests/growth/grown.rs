@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use slipmap::maps::maker::make_in_memory;
 use slipmap::sweep::described::root::Provenance;
-use slipmap::sweep::{Plan, SweepSpec};
+use slipmap::setting::SweepSpec;
+use slipmap::sweep::Plan;
 
 /// Without control, at c = 0 and above.
 const SWEEP: &str = "

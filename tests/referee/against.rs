@@ -4,9 +4,9 @@
 use slipmap::critical::switch_on::{Phase, Trials};
 use slipmap::critical::{self, CriticalVelocity, Problem, Regime, critical_velocity};
 use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
+use slipmap::setting::CaseSpec;
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
-use slipmap::sweep::CaseSpec;
 
 use super::asked::{case_file, phase_file, simulate_command, vc_command};
 use super::block::{Block, Event};

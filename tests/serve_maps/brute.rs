@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 use slipmap::linear::status::AMISS;
+use slipmap::setting::Field;
 use slipmap::store::MapFile;
-use slipmap::sweep::Field;
 
 use super::decoded::Decoded;
 use super::server::Serving;

@@ -1,7 +1,7 @@
 //! The contents of map and trace files.
 
+use slipmap::answers::trace::{EVENTS, MODES};
 use slipmap::linear::best::Kind;
-use slipmap::sweep::cells::trace::{EVENTS, MODES};
 use slipmap::sweep::described::curve_rows::CurveRows;
 use slipmap::sweep::described::group_names;
 use slipmap::sweep::described::schema::{self, root, summary};

@@ -13,11 +13,11 @@ use std::fmt::Write;
 
 use clap::ValueEnum;
 use slipmap::linear::status::FLAGS;
+use slipmap::setting::field::Storage;
+use slipmap::setting::keys::{self, Key};
+use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::{Field, Parameter};
 use slipmap::sweep::described::schema;
-use slipmap::sweep::input::field::Storage;
-use slipmap::sweep::input::keys::{self, Key};
-use slipmap::sweep::input::law_kind::{Formula, LawKind};
-use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
 use super::say;
@@ -189,9 +189,9 @@ fn fields(page: &mut String) {
 }
 
 /// Units with the names of the quantities that they measure.
-fn symbolic() -> slipmap::sweep::input::units::Units {
+fn symbolic() -> slipmap::setting::units::Units {
     let force_length_time = Some(["force", "length", "time"].map(String::from));
-    slipmap::sweep::input::units::Units { force_length_time }
+    slipmap::setting::units::Units { force_length_time }
 }
 
 fn meaning_of_flag(name: &str) -> &'static str {

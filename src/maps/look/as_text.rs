@@ -2,13 +2,14 @@
 //! the command line.
 
 use crate::critical::switch_on::Phase;
-use crate::sweep::input::command::{command_line, point_command, vc_command};
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::search::Protocol;
-use crate::sweep::input::setting::Setting;
-use crate::sweep::input::setting_text::{number, setting_text, table};
-use crate::sweep::input::simulation::Simulation;
-use crate::sweep::{Plan, SweepSpec};
+use crate::setting::SweepSpec;
+use crate::setting::command::{command_line, point_command, vc_command};
+use crate::setting::parameter::Parameter;
+use crate::setting::search::Protocol;
+use crate::setting::setting_text::{number, setting_text, table};
+use crate::setting::simulation::Simulation;
+use crate::setting::values::Setting;
+use crate::sweep::Plan;
 
 /// The requests about a cell, as text; none for those that do not apply to it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -126,8 +127,8 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::CaseSpec;
-    use crate::sweep::input::point_file::{PointOf, PointSpec};
+    use crate::setting::CaseSpec;
+    use crate::setting::point_file::{PointOf, PointSpec};
 
     /// Checks that settings are equal; two missing values count as equal.
     #[track_caller]

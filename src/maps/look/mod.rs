@@ -285,9 +285,9 @@ impl Desk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting::{Field, Parameter};
     use crate::store::chunk_layout::ChunkLayout;
     use crate::store::map_file::MapAxis;
-    use crate::sweep::{Field, Parameter};
 
     /// A map of one axis, in chunks of 4 cells.
     fn facts() -> Facts {

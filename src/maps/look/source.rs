@@ -4,15 +4,16 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
+use crate::setting::Field;
+use crate::setting::field::Storage;
 use crate::store::chunk_layout::ChunkLayout;
 use crate::store::columns::FileColumns;
 use crate::store::map_file::MapAxis;
 use crate::store::stamp::Stamp;
 use crate::store::tiles::GrowingMap;
 use crate::store::{MapFile, StoreError};
+use crate::sweep::Plan;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::field::Storage;
-use crate::sweep::{Field, Plan};
 
 /// The time between checks whether a map has been replaced.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(500);

@@ -1,7 +1,7 @@
 //! A window on a map: the request and the answer.
 
 use super::pixels::Stretch;
-use crate::sweep::Field;
+use crate::setting::Field;
 
 /// A window on a map.
 #[derive(Debug, Clone, PartialEq)]

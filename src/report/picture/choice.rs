@@ -4,8 +4,8 @@ use super::error::PictureError;
 use super::options::{Named, PictureOptions};
 use super::text::{self, Rich};
 use crate::report::visible::visible_line;
+use crate::setting::Field;
 use crate::store::MapFile;
-use crate::sweep::Field;
 use crate::sweep::described::schema::root;
 
 /// The field that a picture shows.

@@ -1,7 +1,7 @@
 //! Colours: perceptually ordered, and distinguishable by the colour-blind.
 
 use super::gradient::ColourMap;
-use crate::sweep::Field;
+use crate::setting::Field;
 
 /// A colour of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::setting::quantity::Quantity;
 use crate::store::StoreError;
-use crate::sweep::input::quantity::Quantity;
 
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]

@@ -21,10 +21,10 @@ use super::traced::Curves;
 use super::view::View;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::report::known::Known;
+use crate::setting::Field;
+use crate::setting::field::Storage;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
-use crate::sweep::Field;
-use crate::sweep::input::field::Storage;
 
 /// Initial space for the key.
 const GAP: f64 = 34.0;

@@ -12,8 +12,8 @@ use super::paint::Paint;
 use super::scene::Scene;
 use super::text::{Rich, field_name, suffix};
 use crate::report::known::{Gap, Known};
-use crate::sweep::Field;
-use crate::sweep::input::source::{OfRoots, Source};
+use crate::setting::Field;
+use crate::setting::source::{OfRoots, Source};
 
 /// Width of boundary lines.
 pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
@@ -188,10 +188,10 @@ mod tests {
     use super::*;
     use crate::report::picture::gradient::ColourMap;
     use crate::report::picture::hatch;
+    use crate::setting::field::Storage;
+    use crate::setting::regime_at_v0::RegimeAtV0;
     use crate::slip::outcome::Outcome;
     use crate::store::map_file::Plane;
-    use crate::sweep::input::field::Storage;
-    use crate::sweep::input::regime_at_v0::RegimeAtV0;
 
     fn plane(cells: &[f64]) -> Known {
         let gap = |value: &f64| value.is_nan().then_some(Gap::NoValue);

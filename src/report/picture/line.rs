@@ -19,10 +19,10 @@ use super::text::{Rich, field_name, field_title, number, suffix};
 use super::value_scale;
 use super::view::View;
 use crate::report::known::{Gap, Known};
+use crate::setting::Field;
+use crate::setting::field::Storage;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::Field;
-use crate::sweep::input::field::Storage;
 
 const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).

@@ -82,9 +82,10 @@ mod told_apart;
 
 use std::path::Path;
 
+use crate::answers::Trace;
 use crate::report::visible::visible_line;
+use crate::setting::CaseSpec;
 use crate::store::{MapFile, TraceFile};
-use crate::sweep::{CaseSpec, Trace};
 use choice::Choice;
 pub use error::PictureError;
 use file::{Format, Origin};

@@ -9,7 +9,7 @@ use super::scale::Scale;
 use super::scene::Scene;
 use super::text::{Rich, number};
 use crate::report::known::Gap;
-use crate::sweep::Field;
+use crate::setting::Field;
 
 /// Height of a bar, in units of the picture.
 const HEIGHT: f64 = 8.0;

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use super::error::PictureError;
 use super::gradient::ColourMap;
-use crate::sweep::Field;
-use crate::sweep::input::quantity::Quantity;
+use crate::setting::Field;
+use crate::setting::quantity::Quantity;
 
 /// Allowed widths and heights of a picture, in pixels.
 const SIZES: RangeInclusive<u32> = 300..=5000;

@@ -7,8 +7,8 @@ use super::legend::Swatch;
 use super::options::PictureOptions;
 use super::scale::Scale;
 use super::text::{Rich, decimal_exponent, number};
-use crate::sweep::Field;
-use crate::sweep::input::field::{Spread, Storage};
+use crate::setting::Field;
+use crate::setting::field::{Spread, Storage};
 
 /// The share of the values of slopes and further roots that lie on the scale. Near double roots
 /// some slopes exceed any scale, and as the delay vanishes all roots but the rightmost go to −∞.

@@ -12,8 +12,8 @@ use super::text::{Rich, assignment, number, suffix};
 use super::value_scale;
 use crate::explore::along_delay::AlongDelay;
 use crate::explore::point::BlockPoint;
-use crate::sweep::Parameter;
-use crate::sweep::input::units::Units;
+use crate::setting::Parameter;
+use crate::setting::units::Units;
 
 /// Share of the width for the complex plane.
 const PLANE: f64 = 0.56;

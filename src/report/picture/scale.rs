@@ -1,7 +1,7 @@
 //! From the values of an axis to places along it.
 
 use super::ticks::{self, Tick};
-use crate::sweep::input::system::SpeedUnit;
+use crate::setting::system::SpeedUnit;
 
 /// Relative agreement of the ratios of neighbouring values on a logarithmic axis.
 const SAME_RATIO: f64 = 1e-6;

@@ -2,10 +2,10 @@
 
 use super::scale::Scale;
 use super::text::{Rich, axis_title};
+use crate::setting::Parameter;
+use crate::setting::system::SpeedAxis;
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
-use crate::sweep::Parameter;
-use crate::sweep::input::system::SpeedAxis;
 
 /// The speed shown for an axis, if the map's system says that its delay is a period.
 fn speed_of<'m>(map: &'m MapFile, axis: &MapAxis) -> Option<&'m SpeedAxis> {

@@ -2,8 +2,8 @@
 
 use super::panels::Panel;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::setting::Field;
 use crate::store::map_file::Plane;
-use crate::sweep::Field;
 
 /// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by increasing x.
 pub(super) type Region = Vec<(f64, f64, f64)>;

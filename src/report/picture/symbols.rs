@@ -6,9 +6,9 @@ use super::panels::Panel;
 use super::scene::{Point, Scene};
 use super::text::Rich;
 use super::view::View;
+use crate::setting::Parameter;
+use crate::setting::values::Setting;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::Parameter;
-use crate::sweep::input::setting::Setting;
 
 /// Half the size of a symbol, the width of its line, and the paper around it, in units of the
 /// picture.

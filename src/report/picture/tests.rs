@@ -11,8 +11,9 @@ use crate::linear::certificate::roots_right_of;
 use crate::linear::curves::StableSide;
 use crate::maps::maker::make_in_memory;
 use crate::model::{Groups, elementary};
+use crate::setting::{Field, Parameter, SweepSpec};
+use crate::sweep::Plan;
 use crate::sweep::described::root::Provenance;
-use crate::sweep::{Field, Parameter, Plan, SweepSpec};
 
 const FIG2: &str = "
     title = \"Velocity control\"

@@ -1,10 +1,10 @@
 //! Names, values and units as written in a picture.
 
 use super::font;
+use crate::setting::Field;
+use crate::setting::quantity::Quantity;
+use crate::setting::source::{OfRoots, Source};
 use crate::store::map_file::MapAxis;
-use crate::sweep::Field;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::source::{OfRoots, Source};
 
 /// Size of subscripts relative to the text.
 const SUBSCRIPT_SIZE: f64 = 0.72;
@@ -246,7 +246,7 @@ fn with_minus(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::Parameter;
+    use crate::setting::Parameter;
 
     #[test]
     fn numbers_are_short_and_have_a_minus_sign() {

@@ -18,8 +18,8 @@ use super::colour::{
     PAPER, PERSISTS, Rgb, STABLE, UNKNOWN, UNSTABLE, ZERO,
 };
 use super::gradient::ColourMap;
-use crate::sweep::Field;
-use crate::sweep::input::field::OUTCOMES;
+use crate::setting::Field;
+use crate::setting::field::OUTCOMES;
 
 /// The least difference between two meanings, and between a meaning and an end of a colour map.
 const APART: f64 = 10.0;

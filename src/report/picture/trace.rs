@@ -9,10 +9,11 @@ use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
 use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
+use crate::answers::Trace;
+use crate::answers::trace::{Sample, TraceEvent};
+use crate::setting::{CaseSpec, Parameter};
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
-use crate::sweep::cells::trace::{Sample, TraceEvent};
-use crate::sweep::{CaseSpec, Parameter, Trace};
 
 const WIDTH: f64 = 2.6;
 /// Width of the line at a switch-on or a lift-off.

@@ -3,14 +3,15 @@
 
 use super::view::View;
 use crate::model::stop::Stop;
+use crate::setting::Parameter;
+use crate::setting::axis::spans_curves;
 use crate::store::curve_reader::curves_of;
 use crate::store::map_file::MapCurve;
 use crate::store::{MapFile, StoreError};
+use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::trace_spanned;
 use crate::sweep::described::curve_rows::CurveRows;
 use crate::sweep::described::schema::root;
-use crate::sweep::input::axis::spans_curves;
-use crate::sweep::{Parameter, Plan};
 
 /// The curves of a picture.
 #[derive(Debug, Default)]

@@ -4,8 +4,8 @@ use super::error::PictureError;
 use super::options::PictureOptions;
 use super::paint::{DECADES, at_zero, logarithmic};
 use super::scale::Scale;
-use crate::sweep::Field;
-use crate::sweep::input::field::{Spread, Storage};
+use crate::setting::Field;
+use crate::setting::field::{Spread, Storage};
 
 /// The largest relative error on the scale.
 const LARGEST_ERROR: f64 = 1.0;

@@ -3,12 +3,12 @@
 use super::error::PictureError;
 use super::speed;
 use super::text::{Rich, assignment};
+use crate::setting::Parameter;
+use crate::setting::axis::nearest;
+use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
-use crate::sweep::Parameter;
-use crate::sweep::input::axis::nearest;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::units::Units;
 
 /// The most panels, or colours, that can be told apart.
 pub(super) const MOST_PANELS: usize = 12;

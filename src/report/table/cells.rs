@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{About, Column, Table, TableError, put_number};
 use crate::linear::status::FLAGS;
+use crate::setting::Field;
 use crate::store::cell_blocks::CellBlock;
 use crate::store::{MapAxis, MapFile};
-use crate::sweep::Field;
 use crate::sweep::described::schema::{STATUS, root};
 use crate::sweep::engine::STATUS_FILL;
 

@@ -23,9 +23,9 @@ pub use motion::{write_events, write_samples};
 pub use starts::write_starts;
 
 use super::visible::visible_line;
+use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
 use crate::store::StoreError;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::units::Units;
 
 /// Why a table is not complete.
 #[derive(Debug, thiserror::Error)]

@@ -4,11 +4,12 @@ use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{About, Column, Table, TableError};
-use crate::sweep::cells::trace::MODES;
+use crate::answers::Trace;
+use crate::answers::trace::MODES;
+use crate::setting::simulation::{DISTURBED, assumed_start};
+use crate::setting::{CaseSpec, Parameter};
 use crate::sweep::described::schema::trace;
 use crate::sweep::described::trace::{Quantity, TIME};
-use crate::sweep::input::simulation::{DISTURBED, assumed_start};
-use crate::sweep::{CaseSpec, Parameter, Trace};
 
 /// Writes the samples of a motion, one row each: time, `quantities`, and the mode as a word.
 /// Returns the number of rows.

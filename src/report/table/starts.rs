@@ -4,10 +4,10 @@ use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Column, Table, TableError};
+use crate::answers::basin::Region;
 use crate::explore::basin::Followed;
-use crate::sweep::cells::basin::Region;
-use crate::sweep::input::units::Units;
-use crate::sweep::{Field, Parameter};
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter};
 
 /// Writes starts, one row each: the number of the scrambling, ẋ and elongation or the phase of
 /// switch-on, and the outcome as a word. Returns the number of rows.

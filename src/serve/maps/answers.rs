@@ -12,9 +12,9 @@ use crate::explore::encoded::Arrays;
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
 use crate::maps::look::{Asked, Facts, Look, Numbers, Scale, Shot, Shown, Stretch};
-use crate::sweep::Field;
+use crate::setting::Field;
+use crate::setting::field::Storage;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::field::Storage;
 
 /// How long an answer waits for a complete window; after that it has what was read so far.
 const PATIENCE: Duration = Duration::from_millis(250);

@@ -4,13 +4,13 @@ use super::described::{self, MapAxisEnds, MapField, MapFlag, MapScalar, MapSumma
 use crate::explore::known::KnownField;
 use crate::linear::status::FLAGS;
 use crate::maps::look::Look;
+use crate::setting::Field;
+use crate::setting::quantity::Quantity;
+use crate::setting::search::LIMIT;
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::store::tiles::GrowingMap;
-use crate::sweep::Field;
 use crate::sweep::described::schema::root;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::search::LIMIT;
 
 /// The most values of an axis that are listed.
 const MOST_VALUES: usize = 4096;

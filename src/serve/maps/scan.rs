@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use crate::store::stamp::Stamp;
 use crate::store::tiles::shards;
-use crate::sweep::plan::in_hexadecimal;
+use crate::text::in_hexadecimal;
 
 /// The deepest nesting of folders that are searched.
 const DEEPEST: usize = 8;

@@ -11,10 +11,13 @@ use serde::{Deserialize, Serialize};
 use super::super::error::StoreError;
 use super::super::regular::{self, NotRead};
 use super::record::{Digest, digest};
+use crate::setting::SweepSpec;
+use crate::sweep::Shard;
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::schema;
-use crate::sweep::plan::{Plan, in_hexadecimal};
-use crate::sweep::{Shard, SpecError, SweepSpec};
+use crate::sweep::plan::Plan;
+use crate::text::SpecError;
+use crate::text::in_hexadecimal;
 
 /// Name of the file.
 pub const NAME: &str = "manifest.json";

@@ -6,9 +6,9 @@ use crate::linear::general::curves::trace;
 use crate::linear::general::{Setting as SystemSetting, SystemPlane};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::setting::Setting;
+use crate::setting::parameter::Parameter;
+use crate::setting::quantity::Quantity;
+use crate::setting::values::Setting;
 
 /// Traces the curves of the plane of the two parameters `of`. Once `stop` is set, the answer comes
 /// soon but is meaningless.

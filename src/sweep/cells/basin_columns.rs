@@ -1,17 +1,17 @@
 //! The fields from motions with many starts.
 
-use super::basin::{Asked, Tally};
 use super::buffers::TileBuffers;
 use super::line::SlowLine;
+use crate::answers::basin::{Asked, Tally};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
+use crate::setting::basin::Basin;
+use crate::setting::simulation::Simulation;
+use crate::setting::source::{BasinCell, Source};
+use crate::setting::spec::SweepSpec;
+use crate::setting::values::Setting;
 use crate::slip::case::CaseError;
 use crate::slip::motion::Motion;
-use crate::sweep::input::basin::Basin;
-use crate::sweep::input::setting::Setting;
-use crate::sweep::input::simulation::Simulation;
-use crate::sweep::input::source::{BasinCell, Source};
-use crate::sweep::input::spec::SweepSpec;
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct BasinColumns<'p> {

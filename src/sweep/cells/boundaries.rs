@@ -12,8 +12,8 @@ use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::law::{FrictionLaw, Kind};
 use crate::model::stop::Stop;
 use crate::model::{Groups, ModelError};
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::setting::Setting;
+use crate::setting::parameter::Parameter;
+use crate::setting::values::Setting;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::planes_of_curves::traced_by_closed_form;
 use crate::sweep::plan::tile::index_of;
@@ -220,7 +220,7 @@ pub(super) fn joined(
 mod tests {
     use super::*;
     use crate::linear::certificate::roots_right_of;
-    use crate::sweep::SweepSpec;
+    use crate::setting::SweepSpec;
 
     fn sweep(speeds: &[f64], mu_k: &[f64], alpha_n: f64) -> Plan {
         let text = format!(

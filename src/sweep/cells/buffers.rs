@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::sweep::input::field::{Field, Storage};
+use crate::setting::field::{Field, Storage};
 use crate::sweep::plan::Plan;
 
 /// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill

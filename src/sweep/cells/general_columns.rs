@@ -13,8 +13,8 @@ use crate::linear::row::Delays;
 use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
 use crate::model::stop::Stop;
-use crate::sweep::input::field::Field;
-use crate::sweep::input::source::{OfLinear, OfRoots, Source};
+use crate::setting::field::Field;
+use crate::setting::source::{OfLinear, OfRoots, Source};
 
 use crate::sweep::cells::root_columns::relaxation_time;
 

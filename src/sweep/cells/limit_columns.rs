@@ -3,8 +3,8 @@
 use super::buffers::TileBuffers;
 use crate::critical::limit::LimitCell;
 use crate::linear::status::NOT_CONVERGED;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::source::Source;
+use crate::setting::parameter::Parameter;
+use crate::setting::source::Source;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of};
 

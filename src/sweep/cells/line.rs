@@ -1,8 +1,8 @@
 //! A line of cells: its places in the buffers of a tile and in the map.
 
 use crate::model::stop::Stop;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::setting::Setting;
+use crate::setting::parameter::Parameter;
+use crate::setting::values::Setting;
 
 /// Places of the cells of a line in the buffers.
 #[derive(Debug, Clone, Copy)]

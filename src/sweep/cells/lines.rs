@@ -2,11 +2,11 @@
 
 use crate::linear::line::Linear;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
-use crate::sweep::input::linear_model::NoAnswer;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::setting::Setting;
-use crate::sweep::input::system::Evaluation;
+use crate::setting::linear_model::NoAnswer;
+use crate::setting::parameter::Parameter;
+use crate::setting::quantity::Quantity;
+use crate::setting::system::Evaluation;
+use crate::setting::values::Setting;
 use crate::sweep::plan::Plan;
 
 /// The groups of one line after the other. What does not change between lines is not computed

@@ -2,12 +2,12 @@
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
-use super::margins::Around;
+use crate::answers::margins::Around;
 use crate::linear::margins::{Limits, LoopMargins, Margins};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
-use crate::sweep::input::field::Field;
-use crate::sweep::input::source::{OfMargins, Source};
+use crate::setting::field::Field;
+use crate::setting::source::{OfMargins, Source};
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct MarginColumns {

@@ -11,8 +11,8 @@ use crate::linear::general::rightmost::scaled_margin;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
-use crate::sweep::input::field::Field;
-use crate::sweep::input::source::{OfRoots, Slope, Source};
+use crate::setting::field::Field;
+use crate::setting::source::{OfRoots, Slope, Source};
 
 /// An equation with roots that depend on the groups.
 pub(super) trait Moving: Equation {

@@ -1,18 +1,18 @@
 //! Checks of a cell of a map by methods that did not compute it.
 
-use super::basin::{Asked, STUDENT_95, Tally};
-use super::vc;
+use crate::answers::basin::{Asked, STUDENT_95, Tally};
+use crate::answers::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
 use crate::linear::general;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::ModelError;
+use crate::setting::field::{Field, number_of_transition};
+use crate::setting::search::Protocol;
+use crate::setting::values::Setting;
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
-use crate::sweep::input::field::{Field, number_of_transition};
-use crate::sweep::input::search::Protocol;
-use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
 /// The stored contents of one cell of a map.

@@ -4,14 +4,14 @@ use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
+use crate::setting::simulation::Simulation;
+use crate::setting::source::Source;
+use crate::setting::spec::SweepSpec;
 use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
 use crate::slip::outcome::{Outcome, Summary};
 use crate::slip::sliding::Sliding;
-use crate::sweep::input::simulation::Simulation;
-use crate::sweep::input::source::Source;
-use crate::sweep::input::spec::SweepSpec;
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct SlipColumns<'p> {

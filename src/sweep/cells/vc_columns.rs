@@ -5,20 +5,20 @@ use std::ops::Range;
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
-use super::vc::{self, Asked};
+use crate::answers::vc::{self, Asked};
 use crate::critical::along_delay::BLOCK;
 use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::setting::field::Field;
+use crate::setting::parameter::Parameter;
+use crate::setting::search::{Protocol, Search};
+use crate::setting::source::{Source, VcCell};
+use crate::setting::spec::SweepSpec;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::Integrator;
-use crate::sweep::input::field::Field;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::search::{Protocol, Search};
-use crate::sweep::input::source::{Source, VcCell};
-use crate::sweep::input::spec::SweepSpec;
 use crate::sweep::plan::pieces::mixed;
 
 /// Fills the columns of one thread's tiles.

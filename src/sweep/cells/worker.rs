@@ -21,9 +21,9 @@ use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::model::stop::Stop;
-use crate::sweep::input::field::Field;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::source::{OfLinear, Source};
+use crate::setting::field::Field;
+use crate::setting::parameter::Parameter;
+use crate::setting::source::{OfLinear, Source};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 

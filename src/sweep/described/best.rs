@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::cells::about_parameter;
 use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
 use super::{Attribute, DIMENSIONS, Element, FILL_VALUE, Group, Variable, about, attribute, flags};
+use crate::answers::best::BestSettings;
 use crate::linear::best::Kind;
-use crate::sweep::cells::best::BestSettings;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::units::Units;
+use crate::setting::parameter::Parameter;
+use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
 use crate::sweep::plan::Plan;
 
 /// The best setting of one plane as the values of the group's variables; fill values where there is

@@ -6,12 +6,12 @@ use super::{
 };
 use crate::critical::switch_on::Phase;
 use crate::linear::status::FLAGS;
+use crate::setting::basin::{Basin, SCRAMBLINGS};
+use crate::setting::field::{Field, Storage};
+use crate::setting::quantity::Quantity;
+use crate::setting::search::{Protocol, Search};
+use crate::setting::units::Units;
 use crate::sweep::cells::buffers::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::basin::{Basin, SCRAMBLINGS};
-use crate::sweep::input::field::{Field, Storage};
-use crate::sweep::input::quantity::Quantity;
-use crate::sweep::input::search::{Protocol, Search};
-use crate::sweep::input::units::Units;
 use crate::sweep::plan::Plan;
 
 /// The dimensions of the cells.

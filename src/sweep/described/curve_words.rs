@@ -1,7 +1,7 @@
 //! The words for the kinds of curves, of their crossings and of their sides.
 
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::quantity::Quantity;
+use crate::setting::parameter::Parameter;
+use crate::setting::quantity::Quantity;
 
 /// How a pair of roots crosses, in the words of the map: for −1, 0, 1.
 pub const DIRECTIONS: &str = "to_the_left touch to_the_right";

@@ -7,7 +7,7 @@ use super::curve_words::{DIRECTION, STABLE_SIDE, direction_along, stable_sides};
 use super::group_names::names_of_axes;
 use super::schema::{BOUNDARIES, PARAMETER, PLANE};
 use super::{Attribute, DIMENSIONS, Dimension, Element, Group, Variable, about, attribute, flags};
-use crate::sweep::input::quantity::Quantity;
+use crate::setting::quantity::Quantity;
 use crate::sweep::plan::Plan;
 
 /// The dimensions of the group, in the order of [`Per`].
@@ -221,7 +221,7 @@ mod tests {
     use super::super::curve_words::CURVE_KINDS;
     use super::super::root::Provenance;
     use super::*;
-    use crate::sweep::input::spec::SweepSpec;
+    use crate::setting::spec::SweepSpec;
 
     /// Without the delay in the plane the words of the map name both parameters.
     #[test]

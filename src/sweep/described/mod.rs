@@ -25,9 +25,9 @@ pub mod root;
 pub mod schema;
 pub mod trace;
 
-use super::input::case_file::CaseSpec;
 use super::plan::Plan;
-use crate::sweep::cells::trace::Trace;
+use crate::answers::trace::Trace;
+use crate::setting::case_file::CaseSpec;
 use root::Provenance;
 
 /// The attribute by which netCDF readers recognise elements without a value.
@@ -38,7 +38,8 @@ pub const FILL_VALUE: &str = "_FillValue";
 /// ```
 /// use slipmap::sweep::described::Described;
 /// use slipmap::sweep::described::root::Provenance;
-/// use slipmap::sweep::{Plan, SweepSpec};
+/// use slipmap::setting::SweepSpec;
+/// use slipmap::sweep::Plan;
 ///
 /// let sweep: SweepSpec = "[axes]\ntau = [1, 2, 3]\n[fixed]\nmu_prime = -0.3\n".parse()?;
 /// let map = Described::of_map(&Plan::new(sweep)?, &Provenance::default());

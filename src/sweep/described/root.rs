@@ -2,12 +2,12 @@
 
 use super::schema::{self, root, trace as names};
 use super::{Attribute, attribute};
+use crate::answers::trace::Trace;
+use crate::setting::case_file::CaseSpec;
+use crate::setting::law_kind::LawKind;
+use crate::setting::search::LIMIT;
+use crate::setting::values::Setting;
 use crate::slip::case::Case;
-use crate::sweep::cells::trace::Trace;
-use crate::sweep::input::case_file::CaseSpec;
-use crate::sweep::input::law_kind::LawKind;
-use crate::sweep::input::search::LIMIT;
-use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
 /// Who made a file, for its root attributes.

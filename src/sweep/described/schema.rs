@@ -75,7 +75,7 @@ pub mod root {
     pub const DISTURBANCE: &str = "disturbance";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
-    /// [`crate::sweep::input::search::LIMIT`], for a map of that limit.
+    /// [`crate::setting::search::LIMIT`], for a map of that limit.
     pub const PROTOCOL: &str = "protocol";
     /// The text of the system in the form of a system file; absent for the letter's system.
     pub const SYSTEM: &str = "system";
@@ -112,7 +112,7 @@ pub mod summary {
     pub const UNFLAGGED: &str = "cells_unflagged";
 }
 
-pub use crate::sweep::input::map_names::{BEST, BOUNDARIES, STATUS};
+pub use crate::setting::map_names::{BEST, BOUNDARIES, STATUS};
 
 /// Variables of the group of best settings, besides the gain and the delay.
 pub mod best {

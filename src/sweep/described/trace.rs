@@ -7,10 +7,10 @@ use super::schema::trace as names;
 use super::{
     Attribute, DIMENSIONS, Dimension, Element, FILL_VALUE, Group, Variable, about, attribute, kinds,
 };
-use crate::sweep::cells::trace::{EVENTS, MODES, Sample, Trace, TraceEvent};
-use crate::sweep::input::case_file::CaseSpec;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::units::Units;
+use crate::answers::trace::{EVENTS, MODES, Sample, Trace, TraceEvent};
+use crate::setting::case_file::CaseSpec;
+use crate::setting::parameter::Parameter;
+use crate::setting::units::Units;
 
 /// The number of a mode or kind that stands for no value.
 const FLAG_FILL: u8 = 255;

@@ -2,9 +2,9 @@
 //! them.
 
 use super::Plan;
+use crate::setting::parameter::Parameter;
+use crate::setting::values::Setting;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::setting::Setting;
 
 /// Bytes of the program, the HDF5 library, the tiles that wait to be saved, and a picture.
 const BASE: u64 = 90 << 20;
@@ -142,7 +142,7 @@ fn longest_delay(plan: &Plan) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::SweepSpec;
+    use crate::setting::SweepSpec;
 
     fn memory(field: &str, fixed: &str, tau: f64) -> Memory {
         let text = format!(

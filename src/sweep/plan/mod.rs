@@ -23,15 +23,15 @@ pub use self::tile_size::BLOCK_OF_DELAYS;
 use self::tile_size::{block, cells_per_tile, tile_shape};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
-use crate::sweep::input::axis::Axis;
-use crate::sweep::input::basin::Basin;
-use crate::sweep::input::best_plane::gain_plane;
-use crate::sweep::input::law_kind::LawKind;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::search::Protocol;
-use crate::sweep::input::setting::Setting;
-use crate::sweep::input::spec::SweepSpec;
-use crate::sweep::input::toml_reader::SpecError;
+use crate::setting::axis::Axis;
+use crate::setting::basin::Basin;
+use crate::setting::best_plane::gain_plane;
+use crate::setting::law_kind::LawKind;
+use crate::setting::parameter::Parameter;
+use crate::setting::search::Protocol;
+use crate::setting::spec::SweepSpec;
+use crate::setting::values::Setting;
+use crate::text::{SpecError, in_hexadecimal};
 
 /// The most cells of a map.
 pub const MOST_CELLS: u64 = 10_000_000_000_000;
@@ -335,10 +335,4 @@ fn put_numbers(hash: &mut Sha256, values: &[f64]) {
     for value in values {
         hash.update(value.to_bits().to_le_bytes());
     }
-}
-
-/// Bytes as hexadecimal digits.
-#[must_use]
-pub fn in_hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub enum Piece {
     /// The curves of a plane, see [`crate::sweep::cells::boundaries::plane`].
     Curves(u64),
-    /// The best settings of a plane, see [`crate::sweep::cells::best::best_plane`].
+    /// The best settings of a plane, see [`crate::sweep::cells::best_planes::best_plane`].
     Best(u64),
     /// The cells of a tile.
     Tile(u64),

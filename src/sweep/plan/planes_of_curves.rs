@@ -1,8 +1,8 @@
 //! The planes in which crossing curves are traced, or why there are none.
 
-use crate::sweep::input::axis::plane_of_curves;
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::spec::SweepSpec;
+use crate::setting::axis::plane_of_curves;
+use crate::setting::parameter::Parameter;
+use crate::setting::spec::SweepSpec;
 
 /// The most planes whose crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;

@@ -1,8 +1,8 @@
 //! The size of tiles, and where lines of delays may be cut.
 
-use crate::sweep::input::field::Field;
-use crate::sweep::input::search::Protocol;
-use crate::sweep::input::spec::SweepSpec;
+use crate::setting::field::Field;
+use crate::setting::search::Protocol;
+use crate::setting::spec::SweepSpec;
 
 /// Cells in a tile, roughly: few enough for a processor's cache, enough to compress and write well.
 const CELLS_PER_TILE: usize = 1 << 18;

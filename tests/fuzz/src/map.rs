@@ -11,8 +11,9 @@ use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 use hdf5::{Dataset, File, Group, H5Type, Location};
 use slipmap::maps::check::{Effort, Program, check};
 use slipmap::report::preview::preview;
+use slipmap::setting::SweepSpec;
 use slipmap::store::MapFile;
-use slipmap::sweep::{Plan, SweepSpec};
+use slipmap::sweep::Plan;
 
 const SWEEP: &str = "fields = [\"n_unstable\", \"abscissa\"]\nbest = true\n[axes]\nmu_prime = [-0.2, -0.1]\n\
     alpha_v = [-1.0, -0.5, 0.0]\ntau = [1.0, 2.0, 3.0, 4.0]\n[fixed]\nalpha_n = 0.0\n";

@@ -1,9 +1,11 @@
 //! Texts: sweep files, case files, columns of a friction law, manifests.
 
+use slipmap::setting::friction_table::table_of_columns;
+use slipmap::setting::{CaseSpec, SweepSpec};
 use slipmap::store::tiles::Manifest;
 use slipmap::sweep::described::root::Provenance;
-use slipmap::sweep::input::friction_table::table_of_columns;
-use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};
+use slipmap::sweep::{Plan, Shard, Todo};
+use slipmap::text::SpecError;
 
 /// Axes of more points than this are passed over: they cost time and nothing else. Long ones stand
 /// among the regressions.

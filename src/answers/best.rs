@@ -1,0 +1,332 @@
+//! Settings of fastest decay in physical units, for a point of parameter space and for the planes
+//! of a sweep: over the delay and a gain of the block, or a parameter of a system from a file.
+
+use std::cell::RefCell;
+use std::f64::consts::TAU;
+
+use crate::linear::best::{
+    self, Best, General, Letter, Optimum, Region, Robust, Search, SearchedGain,
+};
+use crate::linear::lobes::minimal_negative_load_gain;
+use crate::model::ModelError;
+use crate::model::stop::Stop;
+use crate::setting::best_plane::{parameter_of, searched_gain};
+use crate::setting::linear_model::NoAnswer;
+use crate::setting::parameter::Parameter;
+use crate::setting::quantity::Quantity;
+use crate::setting::system::Evaluation;
+use crate::setting::values::Setting;
+
+/// Largest |b| for which best settings are searched.
+const STEEPEST: f64 = 1e4;
+
+/// Range of delays by default, in periods: 2π√(M/κ) of the free oscillator, or those of the slowest
+/// swing without delay of a system from a file.
+const PERIODS: f64 = 4.0;
+/// Range of the gain of velocity control by default, in units of the larger of 1 and |b|. The best
+/// settings lie far inside, at −0.16 to −0.32 for −0.73 < b < 0.
+const FARTHEST_VELOCITY: f64 = 2.0;
+/// Range of the load gain by default, beyond 0 and beyond the weakest negative gain that
+/// stabilises, in units of 1 + |b|. The triple real root lies at half of that or less.
+const BEYOND_FOLD: f64 = 4.0;
+/// Range by default of a parameter without bounds of a system from a file: so far on either side of
+/// 0, over the size of its default or 1.
+const FARTHEST: f64 = 4.0;
+/// Range of the memory by default: how near to ±1.
+const MOST_MEMORY: f64 = 0.95;
+
+/// The ranges of a search by [`best_settings`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranges {
+    /// Gains, or values of another parameter that is searched, from ≤ to.
+    pub gain: (f64, f64),
+    /// Delays, 0 ≤ from ≤ to.
+    pub tau: (f64, f64),
+}
+
+/// A stable region of the plane of what is searched and the delay, with its own best setting.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestRegion {
+    /// Its extent, at the resolution of [`crate::linear::best`].
+    pub ranges: Ranges,
+    /// The setting of fastest decay in it.
+    pub best: Optimum,
+}
+
+/// The best settings of a plane of what is searched and the delay; everything in the units of the
+/// parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestSettings {
+    /// The setting of fastest decay or, where none is stable, of slowest growth.
+    pub overall: Optimum,
+    /// Every stable region, ordered by its shortest delay.
+    pub regions: Vec<BestRegion>,
+    /// Number of further regions, which were not searched or decay within rounding.
+    pub regions_left_out: usize,
+}
+
+/// Converts dimensionless gains and delays to physical ones. Systems from files are as they are.
+struct Scales {
+    gain: f64,
+    time: f64,
+}
+
+impl Scales {
+    fn of(setting: &Setting, searched: &Quantity) -> Result<Self, ModelError> {
+        let oscillator = setting.oscillator()?;
+        let time = oscillator.time_unit();
+        Ok(Self {
+            gain: match gain_of(searched) {
+                Some(SearchedGain::Velocity) => 1.0 / time,
+                Some(SearchedGain::Load) => oscillator.stiffness() / setting.sliding_point()?.mu_k,
+                None => 1.0,
+            },
+            time,
+        })
+    }
+
+    /// Converts an optimum. It is kept inside `ranges`, which rounding could leave.
+    fn optimum(&self, found: &Optimum, ranges: &Ranges) -> Optimum {
+        let (gain, tau) = (ranges.gain, ranges.tau);
+        Optimum {
+            gain: (found.gain * self.gain).clamp(gain.0, gain.1),
+            tau: (found.tau * self.time).clamp(tau.0, tau.1),
+            abscissa: found.abscissa / self.time,
+            margin: found.margin / self.time,
+            frequencies: found.frequencies.iter().map(|f| f / self.time).collect(),
+            ..found.clone()
+        }
+    }
+}
+
+fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
+    (from * by, to * by)
+}
+
+/// The gain of the block that is searched.
+fn gain_of(searched: &Quantity) -> Option<SearchedGain> {
+    searched.known().and_then(searched_gain)
+}
+
+/// The default ranges of a search at `setting`.
+///
+/// Of the block. Delays: up to four periods of the free oscillator. Dimensionless gains for
+/// velocity control: ±2 max(1, |b|). For load control they reach from 4(1 + |b|) below the weakest
+/// negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
+///
+/// Of a system from a file. Delays: up to four periods of the slowest swing that it has without
+/// delay, or up to 8π where nothing swings. The parameter: its own range, where that has ends; else
+/// up to 4 max(1, |default|) on either side of 0, as far as the range goes.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range.
+pub fn default_ranges(setting: &Setting, searched: &Quantity) -> Result<Ranges, ModelError> {
+    let Some(gain) = gain_of(searched) else {
+        return Ok(ranges_of_system(setting, searched));
+    };
+    let scales = Scales::of(setting, searched)?;
+    let slope = letter(setting, gain)?.fixed.b.abs();
+    let gains = match gain {
+        SearchedGain::Velocity => {
+            let farthest = FARTHEST_VELOCITY * slope.max(1.0);
+            (-farthest, farthest)
+        }
+        SearchedGain::Load => {
+            let beyond = BEYOND_FOLD * (1.0 + slope);
+            (minimal_negative_load_gain(slope) - beyond, beyond)
+        }
+    };
+    Ok(Ranges {
+        gain: scaled(gains, scales.gain),
+        tau: (0.0, PERIODS * TAU * scales.time),
+    })
+}
+
+/// The default ranges of a search of a system from a file.
+fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
+    let mut without_delay = setting.clone();
+    without_delay.set(Parameter::Tau, 0.0);
+    let linear = without_delay.linear().ok();
+    let frequencies = linear.map(|(model, _)| model.system().frequencies_without_delay());
+    let slowest = frequencies.into_iter().flatten().min_by(f64::total_cmp);
+    let longest = PERIODS * TAU / slowest.unwrap_or(1.0);
+    let gain = match searched {
+        Quantity::Own(own) => {
+            let far = FARTHEST * own.default.abs().max(1.0);
+            match own.ends() {
+                (Some(low), Some(high)) => (low, high),
+                (Some(low), None) => (low, far.max(low + far)),
+                (None, Some(high)) => ((-far).min(high - far), high),
+                (None, None) => (-far, far),
+            }
+        }
+        Quantity::Known(Parameter::Memory) => (-MOST_MEMORY, MOST_MEMORY),
+        Quantity::Known(_) => (0.0, longest),
+    };
+    Ranges {
+        gain,
+        tau: (0.0, longest),
+    }
+}
+
+/// The family of `setting` with the letter's own feedback. It is an error if |b| is so large that
+/// no search resolves the delays of the optima.
+fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
+    let sliding = setting.sliding_point()?;
+    let fixed = setting.oscillator()?.groups(sliding, setting.control());
+    let mu_prime = sliding.mu_prime;
+    ModelError::check(
+        "mu_prime",
+        mu_prime,
+        "such that |mu_prime| N0/sqrt(kappa M) is at most 1e4 where best settings are searched",
+        fixed.b.abs() <= STEEPEST,
+    )?;
+    Ok(Letter { fixed, gain })
+}
+
+/// A copy of `setting` in which what is searched acts.
+fn acting(setting: &Setting, searched: &Quantity) -> Setting {
+    let mut acting = setting.clone();
+    acting.vary(searched, 1.0);
+    acting
+}
+
+/// The settings of fastest decay for every stable region within `ranges`. All parameters but
+/// `searched` and the delay are those of `setting`. Once `stop` is set, the answer comes soon but
+/// is meaningless.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range, or nothing is known of the model in
+/// the middle of the ranges.
+pub fn best_settings(
+    setting: &Setting,
+    searched: &Quantity,
+    ranges: &Ranges,
+    stop: &Stop,
+) -> Result<BestSettings, NoAnswer> {
+    let scales = Scales::of(setting, searched)?;
+    let family = gain_of(searched).map(|gain| letter(setting, gain));
+    let found = match family.transpose()? {
+        Some(family) if acting(setting, searched).is_of_letter() => {
+            best::best(&scales.search(family, ranges), stop)
+        }
+        _ => scales.best_of_any(setting, searched, ranges, stop)?,
+    };
+    Ok(scales.settings(&found, ranges))
+}
+
+/// The best setting under joint errors of gain, delay and μ′.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobustSetting {
+    /// The largest relative error of each.
+    pub spread: f64,
+    /// The setting, with its slowest decay under these errors; in the units of the parameters.
+    pub robust: Robust,
+    /// The slowest decay around the setting of fastest decay, under the same errors, and whether it
+    /// is proved.
+    pub worst_of_best: (f64, bool),
+}
+
+/// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
+/// relative errors of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′. None for the latter
+/// where no setting stays stable.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range, or beyond the letter: there W is not
+/// proved.
+pub fn robust_setting(
+    setting: &Setting,
+    gain: SearchedGain,
+    ranges: &Ranges,
+    spread: f64,
+) -> Result<(BestSettings, Option<RobustSetting>), ModelError> {
+    let searched = parameter_of(gain).into();
+    let scales = Scales::of(setting, &searched)?;
+    // Also where the gains of `setting` are 0: they are searched.
+    acting(setting, &searched).check_of_letter(
+        &Parameter::BEYOND_LETTER,
+        "0 where a robust setting is searched for",
+    )?;
+    let search = scales.search(letter(setting, gain)?, ranges);
+    let found = best::best(&search, &Stop::default());
+    let robust = best::robust(&search, &found, spread).map(|robust| {
+        let best = &found.overall;
+        let (worst, proved) = best::worst_around(&search, best.gain, best.tau, spread);
+        RobustSetting {
+            spread,
+            robust: Robust {
+                gain: robust.gain * scales.gain,
+                tau: robust.tau * scales.time,
+                abscissa: robust.abscissa / scales.time,
+                worst_abscissa: robust.worst_abscissa / scales.time,
+                ..robust
+            },
+            worst_of_best: (worst / scales.time, proved),
+        }
+    });
+    Ok((scales.settings(&found, ranges), robust))
+}
+
+impl Scales {
+    fn search<F>(&self, family: F, ranges: &Ranges) -> Search<F> {
+        Search {
+            family,
+            gains: scaled(ranges.gain, 1.0 / self.gain),
+            delays: scaled(ranges.tau, 1.0 / self.time),
+        }
+    }
+
+    /// The search with any linear model.
+    fn best_of_any(
+        &self,
+        setting: &Setting,
+        searched: &Quantity,
+        ranges: &Ranges,
+        stop: &Stop,
+    ) -> Result<Best, NoAnswer> {
+        let moved = RefCell::new((setting.clone(), Evaluation::default()));
+        let set = |setting: &mut Setting, value: f64, tau: f64| {
+            setting.vary(searched, value * self.gain);
+            setting.set(Parameter::Tau, tau * self.time);
+        };
+        let system_at = |value: f64, tau: f64| {
+            let (setting, scratch) = &mut *moved.borrow_mut();
+            set(setting, value, tau);
+            let (model, _) = setting.linear_in(scratch).ok()?;
+            Some(model.system())
+        };
+        let mut search = self.search(
+            General {
+                system_at: &system_at,
+                lines: setting.has_lines(),
+                width: 0.0,
+            },
+            ranges,
+        );
+        let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
+        let mut in_the_middle = setting.clone();
+        set(
+            &mut in_the_middle,
+            middle(search.gains),
+            middle(search.delays),
+        );
+        in_the_middle.answered()?;
+        search.family.width = search.gains.1 - search.gains.0;
+        Ok(best::best(&search, stop))
+    }
+
+    fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
+        let region = |region: &Region| BestRegion {
+            ranges: Ranges {
+                gain: scaled(region.gains, self.gain),
+                tau: scaled(region.delays, self.time),
+            },
+            best: self.optimum(&region.best, ranges),
+        };
+        BestSettings {
+            overall: self.optimum(&found.overall, ranges),
+            regions: found.regions.iter().map(region).collect(),
+            regions_left_out: found.regions_left_out,
+        }
+    }
+}

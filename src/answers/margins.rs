@@ -1,0 +1,176 @@
+//! Margins of a setting, in its own units.
+
+use crate::linear::general::{DelayLine, System};
+use crate::linear::margins::{
+    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach,
+    SlidingLaw,
+};
+use crate::model::stop::Stop;
+use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
+use crate::setting::parameter::Parameter;
+use crate::setting::values::Setting;
+
+/// A setting and the decay required of it.
+#[derive(Debug, Clone)]
+pub struct Around {
+    of: Case,
+    /// The system and the delay, physical, where the delay alone decides on stability beyond the
+    /// letter.
+    line: Option<(System, f64)>,
+    oscillator: Oscillator,
+    control: Control,
+    /// The friction law and v0, where there is a law.
+    law: Option<(FrictionLaw, f64)>,
+}
+
+impl Around {
+    /// All roots must decay at least at the rate `decay` ≥ 0, in 1/time. None of systems from
+    /// files, and of friction with a state, of which the slope does not say all.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn of(setting: &Setting, decay: f64) -> Result<Option<Self>, ModelError> {
+        if setting.check_of_letter(&[], "").is_err() {
+            return Ok(None);
+        }
+        let oscillator = setting.oscillator()?;
+        let control = setting.control();
+        let groups = oscillator.groups(setting.sliding_point()?, control);
+        let Feedback {
+            tau, channel, lags, ..
+        } = setting.feedback().dimensionless(&oscillator);
+        let of = margins::Setting {
+            groups,
+            tau,
+            decay: decay * oscillator.time_unit(),
+        };
+        let beyond = (!setting.is_of_letter()).then_some(Beyond { channel, lags });
+        let on_axis = beyond.filter(|_| decay == 0.0);
+        Ok(Some(Self {
+            of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),
+            line: on_axis.map(|beyond| {
+                (
+                    beyond.of_groups(groups).system(),
+                    setting.get(Parameter::Tau),
+                )
+            }),
+            oscillator,
+            control,
+            law: setting
+                .friction_law()?
+                .map(|law| (law, setting.get(Parameter::V0))),
+        }))
+    }
+
+    /// The same, but once `stop` is set margins are told soon, and mean nothing.
+    #[must_use]
+    pub fn heeding(self, stop: &Stop) -> Self {
+        let of = self.of.heeding(stop);
+        Self { of, ..self }
+    }
+
+    /// Whether the setting is stable, or decays as required, beyond doubt.
+    #[must_use]
+    pub fn stable(&self) -> bool {
+        self.of.stable()
+    }
+
+    /// The factors of both gains at which stability, or the required decay, is lost.
+    pub fn gain(&self, search: &mut Margins) -> Limits {
+        search.gain(&self.of)
+    }
+
+    /// The phase margin in radians, the latency margin in units of time.
+    pub fn of_loop(&self, search: &mut Margins) -> LoopMargins {
+        let found = search.of_loop(&self.of);
+        LoopMargins {
+            latency: found.latency * self.oscillator.time_unit(),
+            ..found
+        }
+    }
+
+    /// Whether feedback has more than the letter's own.
+    #[must_use]
+    pub fn is_beyond(&self) -> bool {
+        self.of.is_beyond()
+    }
+
+    /// The latency margin alone, in units of time.
+    pub fn latency(&self, search: &mut Margins) -> f64 {
+        search.latency(&self.of) * self.oscillator.time_unit()
+    }
+
+    /// The phase margin alone.
+    pub fn phase(&self, search: &mut Margins) -> f64 {
+        search.phase(&self.of)
+    }
+
+    /// The delays at which stability is lost.
+    #[must_use]
+    pub fn delay(&self) -> Limits {
+        let unit = self.oscillator.time_unit();
+        let Some((system, tau)) = &self.line else {
+            return scaled(margins::delay(&self.of), unit);
+        };
+        let line = DelayLine::of(system).in_physical_time(unit);
+        line.stable_interval_at(*tau)
+            .map_or(Limits::UNDECIDED, |found| Limits {
+                lower: found.from,
+                upper: found.to,
+            })
+    }
+
+    /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
+    pub fn third(&self, search: &mut Margins) -> (Parameter, Limits) {
+        if let Some((law, v0)) = self.sliding() {
+            return (Parameter::V0, margins::velocity(&self.of, &law, v0));
+        }
+        // √(κM)/N0.
+        let damping = self.oscillator.mass() / self.oscillator.time_unit();
+        let slope = damping / self.oscillator.normal_load();
+        (Parameter::MuPrime, scaled(search.slope(&self.of), slope))
+    }
+
+    /// The ends of the searches for upper limits; a limit beyond is given as infinite.
+    #[must_use]
+    pub fn reach(&self) -> Reach {
+        let (reach, unit) = (self.of.reach(), self.oscillator.time_unit());
+        Reach {
+            gain: reach.gain,
+            delay: reach.delay * unit,
+            latency: reach.latency * unit,
+        }
+    }
+
+    /// The largest v0 of the search for limits; none without a friction law.
+    #[must_use]
+    pub fn highest_v0(&self) -> Option<f64> {
+        self.law.as_ref().map(|(_, v0)| v0 * MOST_VELOCITIES)
+    }
+
+    /// The stability radius.
+    #[must_use]
+    pub fn radius(&self) -> Radius {
+        match self.sliding() {
+            Some((law, v0)) => margins::radius_with_law(&self.of, &law, v0),
+            None => margins::radius(&self.of),
+        }
+    }
+
+    fn sliding(&self) -> Option<(SlidingLaw<'_>, f64)> {
+        let (law, v0) = self.law.as_ref()?;
+        let sliding = SlidingLaw {
+            law,
+            oscillator: &self.oscillator,
+            control: self.control,
+        };
+        Some((sliding, *v0))
+    }
+}
+
+fn scaled(limits: Limits, by: f64) -> Limits {
+    Limits {
+        lower: limits.lower * by,
+        upper: limits.upper * by,
+    }
+}

@@ -1,0 +1,19 @@
+//! Answers about one setting, in its own units.
+//!
+//! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
+//!   sequence, followed and counted; the only file that imports sobol_burley
+//! - `best`: best settings in physical units, the ranges searched by default
+//! - `margins`: margins of a setting, in its own units
+//! - `samples`: the samples of a motion, refused or thinned where there are too many
+//! - `trace`: a motion sampled over time, with its events
+//! - `vc`: the critical velocity of a setting by either protocol, the regime of a working velocity,
+//!   and the check by simulation
+
+pub mod basin;
+pub mod best;
+pub mod margins;
+pub mod samples;
+pub mod trace;
+pub mod vc;
+
+pub use trace::Trace;

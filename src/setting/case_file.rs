@@ -1,0 +1,419 @@
+//! One motion as described by a case file, read and checked once.
+//!
+//! ```toml
+//! title = "Velocity control"      # optional
+//! switch_on = 70.0                # when control begins to act, 0 by default; false: never
+//! # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
+//! horizon = 1000.0
+//! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
+//! steps = 1000000                 # the most steps
+//!
+//! [friction]                      # as in sweep files
+//! law = "weakening"
+//! mu0 = 0.5
+//! v_s = 0.5
+//!
+//! [fixed]                         # as in sweep files; tau may be left out where both gains are 0
+//! v0 = 0.35
+//! alpha_v = -0.33
+//! tau = 4.15
+//!
+//! [start]                         # optional: at t = 0, and the elongation before
+//! x_dot0 = 0.3535                 # v0 by default
+//! a0 = 0.294                      # that of sliding at v0 by default, μ_K(v0) N0/κ
+//! # or, with switch_on left out: switch_on_phase = 0.2, the time from a release of
+//! # uncontrolled stick-slip, which is t = 0, to switch-on, modulo the period
+//!
+//! [trace]                         # optional
+//! until = 150.0                   # end of the trace; by default when the outcome is known
+//! samples = 24                    # in each step of the integrator; or interval = 0.05, in time
+//!
+//! [units]                         # optional, as in sweep files
+//! ```
+
+use std::ops::Range;
+
+use super::given::{GivenParameters, read_units};
+use super::keys::{CASE, TRACE, names};
+use super::parameter::{Group, LARGEST, Parameter};
+use super::simulation::{DISTURBED, POSITIVE, Simulation};
+use super::units::Units;
+use super::values::Setting;
+use crate::slip::case::{Case, CaseError};
+use crate::text::toml_reader::{Entry, SpecError, entries, parse};
+
+/// Samples per step if the file gives no number.
+const SAMPLES: u32 = 24;
+/// The most samples per step.
+const MOST_SAMPLES: u64 = 64;
+
+/// Keys of sweep files that case files do not have.
+const OF_SWEEPS: [&str; 5] = ["fields", "axes", "boundaries", "best", "protocol"];
+
+/// Keys that only system files have.
+const OF_SYSTEMS: [&str; 4] = ["P", "Q", "B", "A"];
+
+/// How densely a motion is sampled between its events.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sampling {
+    /// A number of samples in each step of the integrator, 1 to 64.
+    PerStep(u32),
+    /// At all multiples of this time.
+    Interval(f64),
+}
+
+/// A case as described by its file: every value in range, every name known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseSpec {
+    /// Title for pictures and the trace; may be empty.
+    pub title: String,
+    /// All parameters; with a friction law.
+    pub setting: Setting,
+    /// The motion.
+    pub case: Case,
+    /// Whether the file gives no start. The block then starts faster than sliding by [`DISTURBED`]:
+    /// exactly in equilibrium it would stay there, stable or not.
+    pub start_assumed: bool,
+    /// End of the trace, in time; none for the time when the outcome is known.
+    pub until: Option<f64>,
+    /// How densely to sample.
+    pub sampling: Sampling,
+    /// Units of the parameters.
+    pub units: Units,
+    /// The text of the file.
+    pub text: String,
+}
+
+/// The kind of a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextKind {
+    /// A sweep file.
+    Sweep,
+    /// A case file.
+    Case,
+    /// A setting alone, which both kinds have. With a friction law it can be read as a case.
+    Setting,
+    /// A system file.
+    System,
+}
+
+/// The kind of a text, by its keys; none where they do not fit one kind.
+#[must_use]
+pub fn kind_of_text(text: &str) -> Option<TextKind> {
+    let document = parse(text).ok()?;
+    let entries = entries(document.get_ref(), "");
+    let all = |known: &[&str]| entries.iter().all(|entry| known.contains(&entry.key));
+    if entries.iter().any(|entry| OF_SWEEPS.contains(&entry.key)) {
+        Some(TextKind::Sweep)
+    } else if entries.iter().any(|e| OF_SYSTEMS.contains(&e.key)) {
+        Some(TextKind::System)
+    } else if entries.is_empty() || !all(&names(&CASE)) {
+        None
+    } else if all(&["fixed", "friction", "units"]) {
+        Some(TextKind::Setting)
+    } else {
+        Some(TextKind::Case)
+    }
+}
+
+/// Whether a text is a case file rather than a sweep file. It has no key that only sweeps have, and
+/// either a key that only cases have or everything that a case needs.
+#[must_use]
+pub fn is_case_file(text: &str) -> bool {
+    let Ok(document) = parse(text) else {
+        return false;
+    };
+    let entries = entries(document.get_ref(), "");
+    let has = |keys: &[&str]| entries.iter().any(|entry| keys.contains(&entry.key));
+    !has(&OF_SWEEPS) && (has(&["switch_on", "trace"]) || text.parse::<CaseSpec>().is_ok())
+}
+
+impl CaseSpec {
+    /// The error of a trace that would be too long, at the key of the text that makes it so.
+    #[must_use]
+    pub fn too_long(&self, message: String) -> SpecError {
+        let place = || {
+            let document = parse(&self.text).ok()?;
+            let all = entries(document.get_ref(), "");
+            let trace = all.iter().find(|entry| entry.key == "trace")?;
+            let keys = trace.table().ok()?;
+            let key = |name: &str| keys.iter().find(|entry| entry.key == name);
+            let found = key("interval").or_else(|| key("samples"));
+            let found = found.or_else(|| key("until"));
+            Some(found.map_or(&trace.key_span, |entry| &entry.span).clone())
+        };
+        SpecError {
+            span: place(),
+            ..SpecError::whole(message)
+                .help("[trace] until = … ends it earlier, interval = … makes it coarser")
+        }
+    }
+}
+
+impl std::str::FromStr for CaseSpec {
+    type Err = SpecError;
+
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// Points at the first place that is not understood, out of range or contradictory.
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let document = parse(text)?;
+        let mut draft = Draft::default();
+        for entry in entries(document.get_ref(), "") {
+            match entry.key {
+                "title" => entry.line()?.clone_into(&mut draft.title),
+                "friction" => draft.given.read_friction(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry, moves)?,
+                "switch_on" => {
+                    draft.switch_on = Some((read_switch_on(&entry)?, entry.key_span.clone()));
+                }
+                "start" => draft.given.read_start(&entry)?,
+                "trace" => draft.read_trace(&entry)?,
+                "units" => draft.units = read_units(&entry)?,
+                _ if draft.simulation.read(&entry)? => {}
+                key if OF_SWEEPS.contains(&key) => {
+                    return Err(entry.elsewhere(
+                        "it is a key of a sweep file, of a map: `slipmap run` takes it",
+                    ));
+                }
+                _ => return Err(entry.unknown(&names(&CASE))),
+            }
+        }
+        draft.finish(text)
+    }
+}
+
+/// Whether the parameter belongs to a motion under a friction law.
+fn moves(parameter: Parameter) -> bool {
+    matches!(parameter.group(), Group::Model | Group::Pull | Group::Start)
+}
+
+/// Reads when control begins to act: a time, or +∞ for `false`.
+fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
+    match entry.boolean() {
+        Ok(false) => Ok(f64::INFINITY),
+        Ok(true) => Err(entry
+            .error("true says not when")
+            .help("a time from 0 on, or false for never")),
+        Err(_) => entry.number_within(0.0..=LARGEST),
+    }
+}
+
+#[derive(Default)]
+struct Draft {
+    title: String,
+    given: GivenParameters,
+    switch_on: Option<(f64, Range<usize>)>,
+    simulation: Simulation,
+    until: Option<f64>,
+    sampling: Option<Sampling>,
+    units: Units,
+}
+
+impl Draft {
+    fn read_trace(&mut self, trace: &Entry) -> Result<(), SpecError> {
+        for entry in trace.table()? {
+            let sampling = match entry.key {
+                "until" => {
+                    self.until = Some(entry.number_within(POSITIVE)?);
+                    continue;
+                }
+                "samples" => Sampling::PerStep(read_samples(&entry)?),
+                "interval" => Sampling::Interval(entry.number_within(POSITIVE)?),
+                _ => return Err(entry.unknown(&names(&TRACE))),
+            };
+            if self.sampling.replace(sampling).is_some() {
+                return Err(SpecError::at(
+                    entry.key_span.clone(),
+                    "trace: either samples in each step or an interval, not both",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, text: &str) -> Result<CaseSpec, SpecError> {
+        let Some(law_place) = self.given.law_place().cloned() else {
+            return Err(SpecError::whole("a case needs a friction law")
+                .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
+        };
+        self.given.check_motions()?;
+        let mut setting = self.given.setting();
+        let optional = (!setting.control().act()).then_some(Parameter::Tau);
+        self.given.check(optional.as_slice(), Some(&law_place))?;
+        if setting.get(Parameter::Tau).is_nan() {
+            setting.set(Parameter::Tau, 0.0);
+        }
+        let start_assumed = !self.given.has_start();
+        if start_assumed {
+            let v0 = setting.get(Parameter::V0);
+            setting.set(Parameter::XDot0, (1.0 + DISTURBED) * v0);
+        }
+        let case = self.case(&setting)?;
+        case.motion().map_err(|error| self.refused(&error))?;
+        Ok(CaseSpec {
+            title: std::mem::take(&mut self.title),
+            setting,
+            case,
+            start_assumed,
+            until: self.until,
+            sampling: self.sampling.unwrap_or(Sampling::PerStep(SAMPLES)),
+            units: self.units,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The motion, with the defaults that depend on parameters.
+    fn case(&self, setting: &Setting) -> Result<Case, SpecError> {
+        self.given.check_start()?;
+        let phase = self.given.place(Parameter::SwitchOnPhase);
+        let switch_on = match (&self.switch_on, phase) {
+            (Some((_, place)), Some(_)) => {
+                let message = "switch_on: switch_on_phase says when control begins to act";
+                return Err(SpecError::at(place.clone(), message).help("leave one of them out"));
+            }
+            (given, _) => given.as_ref().map_or(0.0, |(time, _)| *time),
+        };
+        let case = self
+            .simulation
+            .case(setting, switch_on)
+            .map_err(|error| self.given.refused(&error))?
+            .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
+        let name = match phase {
+            Some(_) => Parameter::SwitchOnPhase.name(),
+            None => "switch_on",
+        };
+        if case.switch_on.is_finite() {
+            self.simulation.check_horizon(name, case.switch_on)?;
+        }
+        Ok(case)
+    }
+
+    /// An error of the model, at the place of the parameter if the file gives it.
+    fn refused(&self, error: &CaseError) -> SpecError {
+        let parameter = match error {
+            CaseError::Model(error) => Parameter::from_name(error.parameter),
+            CaseError::NoCycle(_) => Some(Parameter::SwitchOnPhase),
+        };
+        SpecError {
+            message: error.to_string(),
+            span: parameter.and_then(|p| self.given.place(p)).cloned(),
+            help: None,
+        }
+    }
+}
+
+fn read_samples(entry: &Entry) -> Result<u32, SpecError> {
+    match entry.whole()? {
+        n @ 1..=MOST_SAMPLES => Ok(n as u32),
+        n => Err(entry.error(format!("{n} is outside its range: 1 to {MOST_SAMPLES}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slip::motion::Accuracy;
+
+    const PLAIN: &str = "[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n";
+
+    #[test]
+    fn what_is_left_out_has_its_default() {
+        let spec: CaseSpec = PLAIN.parse().unwrap();
+        let case = &spec.case;
+        assert_eq!(case.initial_state(), (1.01 * 0.1, 0.4));
+        assert!(spec.start_assumed);
+        let said: CaseSpec = format!("{PLAIN}[start]\nx_dot0 = 0.1\n").parse().unwrap();
+        assert_eq!(said.case.initial_state(), (0.1, 0.4));
+        assert!(!said.start_assumed);
+        assert_eq!(case.switch_on, f64::INFINITY, "nothing to switch on");
+        assert_eq!((case.feedback.tau, case.horizon), (0.0, 1000.0));
+        assert_eq!(case.accuracy, Accuracy::default());
+        assert_eq!((spec.until, spec.sampling), (None, Sampling::PerStep(24)));
+    }
+
+    #[test]
+    fn a_case_is_told_from_a_sweep() {
+        for (text, case) in [
+            (PLAIN, true),
+            ("switch_on = 1", true),
+            ("[trace]", true),
+            (&*format!("{PLAIN}[axis]\ntau = [1]"), false),
+            ("", false),
+            ("[fixed]\nv0 = 1", false),
+            ("[axis]\ntau = [1]", false),
+            ("friction = ", false),
+        ] {
+            assert_eq!(is_case_file(text), case, "{text}");
+            assert!(!is_case_file(&format!("axes.tau = [1]\n{text}")));
+        }
+    }
+
+    #[test]
+    fn the_key_that_makes_a_trace_too_long_is_pointed_at() {
+        for (trace, at) in [
+            ("[trace]\nuntil = 9.0\ninterval = 1e-9\n", "1e-9"),
+            ("[trace]\nuntil = 9.0\n", "9.0"),
+            ("[trace]\n", "trace"),
+        ] {
+            let text = format!("{PLAIN}{trace}");
+            let spec: CaseSpec = text.parse().unwrap();
+            let place = spec.too_long(String::new()).span.unwrap();
+            assert_eq!(&text[place], at);
+        }
+        let spec: CaseSpec = PLAIN.parse().unwrap();
+        assert_eq!(spec.too_long(String::new()).span, None);
+    }
+
+    #[test]
+    fn mistakes_are_pointed_at() {
+        for (text, says, at) in [
+            ("", "needs a friction law", None),
+            ("[fixed]\nv0 = 1\n", "needs a friction law", None),
+            ("horizons = 3", "unknown key `horizons`", Some("horizons")),
+            ("switch_on = true", "true says not when", Some("true")),
+            ("switch_on = -1.0", "switch_on: -1 is outside", Some("-1.0")),
+            ("horizon = nan", "horizon: expected a finite", Some("nan")),
+            ("tolerance = 1e-20", "tolerance: ", Some("1e-20")),
+            ("start = { x = 1 }", "unknown key `start.x`", Some("x")),
+            ("trace = { samples = 0 }", "trace.samples: 0 is", Some("0")),
+            (
+                "trace = { samples = 1, interval = 1.0 }",
+                "not both",
+                Some("interval"),
+            ),
+            (
+                "switch_on = 7.0\nhorizon = 5.0\nfixed.alpha_v = 1\nfixed.tau = 1",
+                "not later than",
+                Some("5.0"),
+            ),
+            (
+                "fixed.tau = 0.0\nfixed.alpha_n = 1.0",
+                "tau = 0",
+                Some("tau"),
+            ),
+            (
+                "fixed.alpha_n = 1.0",
+                "tau is not given",
+                Some("\"coulomb\""),
+            ),
+            ("fixed.mu_k = 1.0", "mu_k has no meaning", Some("mu_k")),
+            (
+                "fixed.load_lag = 0.3",
+                "load_lag = 0.3 is outside",
+                Some("load_lag"),
+            ),
+        ] {
+            let friction = "friction = { law = \"coulomb\", mu0 = 0.4 }\nfixed.v0 = 0.1\n";
+            let whole = match at {
+                Some(_) => format!("{text}\n{friction}"),
+                None => text.to_owned(),
+            };
+            let error = whole.parse::<CaseSpec>().unwrap_err();
+            assert!(error.message.contains(says), "{text}: {error}");
+            let place = error.span.clone().map(|span| &whole[span]);
+            assert_eq!(place, at, "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,424 @@
+//! The parameters with values in a file: its tables `[fixed]` and `[friction]`, with the place of
+//! every key.
+
+use std::ops::Range;
+
+use super::friction_table::GivenTable;
+use super::keys::{FRICTION_TABLE, UNITS, names};
+use super::law_kind::{Formula, LawKind, NO_MOTIONS};
+use super::parameter::Parameter;
+use super::units::Units;
+use super::values::{GivenError, Setting};
+use crate::model::ModelError;
+use crate::model::table::TableColumn;
+use crate::text::nearest::did_you_mean;
+use crate::text::toml_reader::{Entry, SpecError, unknown_key};
+
+/// Parameters in the order of the file, each at most once.
+#[derive(Debug, Default)]
+pub(super) struct GivenParameters {
+    values: Vec<(Parameter, f64)>,
+    law: Option<(LawKind, Range<usize>)>,
+    table: GivenTable,
+    places: Vec<(Parameter, Range<usize>)>,
+}
+
+impl GivenParameters {
+    /// Records that the file gives `parameter`, as a value or as an axis.
+    pub(super) fn give(
+        &mut self,
+        parameter: Parameter,
+        key: &Range<usize>,
+    ) -> Result<(), SpecError> {
+        if self.place(parameter).is_some() {
+            let message = format!("{} is given twice", parameter.name());
+            return Err(SpecError::at(key.clone(), message)
+                .help("a parameter is either an axis or a fixed value"));
+        }
+        self.places.push((parameter, key.clone()));
+        Ok(())
+    }
+
+    /// Reads the table `[fixed]`. For an unknown name, one of the parameters that the file `takes`
+    /// is suggested.
+    pub(super) fn read_fixed(
+        &mut self,
+        fixed: &Entry,
+        takes: impl Fn(Parameter) -> bool,
+    ) -> Result<(), SpecError> {
+        for entry in fixed.table()? {
+            let known = Parameter::ALL.into_iter().filter(|p| !p.of_friction_law());
+            let names = known.clone().filter(|p| takes(*p)).map(Parameter::name);
+            let names: Vec<_> = names.collect();
+            let parameter = known
+                .into_iter()
+                .find(|p| p.name() == entry.key)
+                .ok_or_else(|| match Parameter::from_name(entry.key) {
+                    Some(of_law) => entry.elsewhere(&format!(
+                        "{} belongs in [friction], with a law",
+                        of_law.name()
+                    )),
+                    None => entry.unknown(&names),
+                })?;
+            self.read_value(&entry, parameter)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the table `[start]`: the start of a motion. The same parameters may stand in
+    /// `[fixed]`.
+    pub(super) fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
+        for entry in start.table()? {
+            let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
+            let parameter = known.ok_or_else(|| {
+                let of_start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+                entry.unknown(&of_start.map(Parameter::name).collect::<Vec<_>>())
+            })?;
+            self.read_value(&entry, parameter)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the start of a motion is given.
+    pub(super) fn has_start(&self) -> bool {
+        let mut of_start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+        of_start.any(|p| self.place(p).is_some())
+    }
+
+    /// Checks that a motion starts in a state or at a phase, not both.
+    pub(super) fn check_start(&self) -> Result<(), SpecError> {
+        let state = [Parameter::XDot0, Parameter::A0];
+        let state = state.into_iter().find(|p| self.place(*p).is_some());
+        match (self.place(Parameter::SwitchOnPhase), state) {
+            (Some(place), Some(state)) => {
+                let message = format!("switch_on_phase: {} is given as well", state.name());
+                Err(SpecError::at(place.clone(), message).help(
+                    "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip \
+                    (switch_on_phase), not both",
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
+        self.give(parameter, &entry.key_span)?;
+        self.put(parameter, entry.number()?, &entry.span)
+    }
+
+    /// Takes the value of a given parameter, which stands at `place`.
+    fn put(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        place: &Range<usize>,
+    ) -> Result<(), SpecError> {
+        parameter
+            .check(value)
+            .map_err(|e| SpecError::at(place.clone(), e.to_string()))?;
+        self.values.push((parameter, value));
+        Ok(())
+    }
+
+    /// Reads the table `[friction]`.
+    pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
+        let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
+        let [law, table @ ..] = FRICTION_TABLE.map(|key| key.name);
+        let known: Vec<_> = [law]
+            .into_iter()
+            .chain(of_laws.map(Parameter::name))
+            .chain(table)
+            .collect();
+        let mut law = None;
+        for entry in friction.table()? {
+            match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
+                Some(parameter) => self.read_value(&entry, parameter)?,
+                None if entry.key == "law" => law = Some(entry),
+                None if self.table.read(&entry)? => {}
+                None => return Err(entry.unknown(&known)),
+            }
+        }
+        let Some(law) = law else {
+            let place = friction.key_span.clone();
+            return Err(SpecError::at(place, "[friction] needs a law"));
+        };
+        self.law = Some((self.read_law(&law)?, law.span.clone()));
+        Ok(())
+    }
+
+    /// Reads the law named by `entry`, with its points if it is a table.
+    fn read_law(&self, entry: &Entry) -> Result<LawKind, SpecError> {
+        let name = entry.string()?;
+        if name == LawKind::TABLE {
+            return Ok(LawKind::Table(self.table.table(&entry.span)?));
+        }
+        let law = Formula::named(name).map_err(|error| SpecError {
+            help: error.help,
+            ..entry.error(error.message)
+        })?;
+        if let Some((place, column)) = self.table.any() {
+            let message = format!("{column} has no meaning with the {name} law");
+            return Err(
+                SpecError::at(place.clone(), message).help("points are for law = \"table\"")
+            );
+        }
+        Ok(LawKind::Formula(law))
+    }
+
+    /// Checks that motions can be followed under the law, as far as the law alone decides this.
+    pub(super) fn check_motions(&self) -> Result<(), SpecError> {
+        match &self.law {
+            Some((law, place)) if law.has_state() => {
+                let message = format!("the {} law has no motions here", law.name());
+                Err(SpecError::at(place.clone(), message).help(NO_MOTIONS))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// An error of the model at its place, see [`GivenParameters::place_of`].
+    pub(super) fn refused(&self, error: &ModelError) -> SpecError {
+        let mu_s = Parameter::MuS;
+        let said = self.place(mu_s).is_none().then(|| mu_s.default_value());
+        SpecError {
+            span: self.place_of(error).cloned(),
+            ..SpecError::whole(error.with_default_mu_s(said.flatten()))
+        }
+    }
+
+    /// The place at which an error of the model is reported: the value at rest of a table, the
+    /// parameter that it names or from which that follows, else the name of the law. Where a fixed
+    /// μ0 is above a given μ_S, the latter is to blame.
+    fn place_of(&self, error: &ModelError) -> Option<&Range<usize>> {
+        let at_rest = self.table.at_rest();
+        let named = Parameter::from_name(error.parameter);
+        let fixed = |p: Parameter| self.values.iter().any(|(given, _)| *given == p);
+        let mu_s = || match named {
+            Some(p @ Parameter::Mu0) if fixed(p) => self.place(Parameter::MuS),
+            _ => None,
+        };
+        // Without a value of its own it follows from the slope at rest.
+        let slope = || match named {
+            Some(Parameter::Mu0 | Parameter::VS) => self.place(Parameter::MuPrimeRest),
+            _ => None,
+        };
+        let place = || named.and_then(|p| self.place(p));
+        at_rest
+            .filter(|_| error.parameter == TableColumn::MuK.name())
+            .or_else(mu_s)
+            .or_else(place)
+            .or_else(slope)
+            .or(self.law_place())
+    }
+
+    /// The place of the name of the friction law, if there is one.
+    pub(super) fn law_place(&self) -> Option<&Range<usize>> {
+        self.law.as_ref().map(|(_, place)| place)
+    }
+
+    /// The place of the key of a given parameter.
+    pub(super) fn place(&self, parameter: Parameter) -> Option<&Range<usize>> {
+        let found = self.places.iter().find(|(p, _)| *p == parameter);
+        found.map(|(_, place)| place)
+    }
+
+    /// Every given parameter, with the place of its key, in the order of the file.
+    pub(super) fn places(&self) -> impl Iterator<Item = &(Parameter, Range<usize>)> {
+        self.places.iter()
+    }
+
+    /// A setting of the given values, checked as a point of sliding; parameters in `optional` may
+    /// be left out.
+    pub(super) fn sliding(&self, optional: &[Parameter]) -> Result<Setting, SpecError> {
+        self.check(optional, None)?;
+        let setting = self.setting();
+        let open = optional
+            .iter()
+            .any(|p| self.place(*p).is_none() && *p != Parameter::Tau);
+        match setting.sliding_point() {
+            Err(error) if !open => Err(self.refused(&error)),
+            _ => Ok(setting),
+        }
+    }
+
+    /// A setting of the given values, and defaults for all others.
+    pub(super) fn setting(&self) -> Setting {
+        let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));
+        for (parameter, value) in &self.values {
+            setting.set(*parameter, *value);
+        }
+        setting
+    }
+
+    /// Checks that every needed parameter is given, and none that would be ignored. Parameters in
+    /// `optional` may be left out. A missing one is reported at the friction law, or at `place`.
+    pub(super) fn check(
+        &self,
+        optional: &[Parameter],
+        place: Option<&Range<usize>>,
+    ) -> Result<(), SpecError> {
+        let law = self.law.as_ref().map(|(law, _)| law);
+        let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
+        Setting::check_given(law, there).map_err(|error| {
+            let span = match error {
+                GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),
+                GivenError::Missing(Parameter::V0) => self.law_place(),
+                GivenError::Missing(p) if p.of_friction_law() => self.law_place(),
+                GivenError::Missing(_) => place,
+            };
+            SpecError {
+                message: error.message(law, Parameter::key),
+                span: span.cloned(),
+                help: Some(error.help(Parameter::key)),
+            }
+        })
+    }
+}
+
+impl Setting {
+    /// A setting of named numbers, with the checks of a sweep file. What is not given has its
+    /// default value; parameters in `varied` need no value, as if they were axes.
+    ///
+    /// ```
+    /// use slipmap::setting::{Parameter, Setting};
+    ///
+    /// let of = |name, value| Setting::checked([("mu_prime", -0.3), (name, value)], None, &[]);
+    /// assert_eq!(of("tau", 4.15).unwrap().get(Parameter::Tau), 4.15);
+    /// assert_eq!(of("taw", 4.15).unwrap_err().message, "unknown key `taw`");
+    /// ```
+    ///
+    /// # Errors
+    /// In the words of sweep files, without a place: names that are unknown or have no meaning with
+    /// the law, numbers out of range, and parameters that are missing.
+    pub fn checked<'n>(
+        numbers: impl IntoIterator<Item = (&'n str, f64)>,
+        law: Option<LawKind>,
+        varied: &[Parameter],
+    ) -> Result<Self, SpecError> {
+        let nowhere = 0..0;
+        let mut given = GivenParameters {
+            law: law.map(|law| (law, nowhere.clone())),
+            ..GivenParameters::default()
+        };
+        let mut take = |name: &str, value| {
+            let parameter = Parameter::from_name(name).ok_or_else(|| {
+                let law = given.law.as_ref().map(|(law, _)| law);
+                let all = Parameter::ALL.into_iter();
+                let known = all.filter(|p| p.of_start() || Self::takes(law, *p));
+                unknown_key(name, name, &known.map(Parameter::name).collect::<Vec<_>>())
+            })?;
+            given.give(parameter, &nowhere)?;
+            given.put(parameter, value, &nowhere)
+        };
+        let taken = numbers
+            .into_iter()
+            .try_for_each(|(name, value)| take(name, value));
+        let checked = taken
+            .and_then(|()| given.check_start())
+            .and_then(|()| given.sliding(varied));
+        checked.map_err(|error| SpecError {
+            span: None,
+            ..error
+        })
+    }
+}
+
+/// Reads the table `[units]`.
+pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
+    if !units.is_table() {
+        let name = units.string()?;
+        return Units::preset(name).ok_or_else(|| {
+            let meant = did_you_mean(name, Units::PRESETS);
+            let known = Units::PRESETS.join(", ");
+            units
+                .error(format!("unknown units \"{name}\""))
+                .help(format!(
+                    "{meant}known: {known}; or a table of force, length and time"
+                ))
+        });
+    }
+    let [mut force, mut length, mut time] = [None, None, None];
+    for entry in units.table()? {
+        let slot = match entry.key {
+            "force" => &mut force,
+            "length" => &mut length,
+            "time" => &mut time,
+            _ => return Err(entry.unknown(&names(&UNITS))),
+        };
+        let name = entry.string()?;
+        Units::check_name(name).map_err(|why| entry.error(why))?;
+        *slot = Some(name.to_owned());
+    }
+    match (force, length, time) {
+        (Some(force), Some(length), Some(time)) => Ok(Units {
+            force_length_time: Some([force, length, time]),
+        }),
+        _ => Err(SpecError::at(
+            units.key_span.clone(),
+            "units: force, length and time are needed, all three",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setting::point_file::{PointOf, PointSpec};
+
+    /// Every refusal has the words of the same setting in a file, whose places are left out.
+    #[test]
+    fn named_numbers_are_refused_in_the_words_of_files() {
+        let weakening = || Some(LawKind::Formula(Formula::Weakening));
+        let law = "[friction]\nlaw = \"weakening\"\n";
+        for (numbers, law, text) in [
+            (
+                vec![("tau", -1.0), ("mu_prime", 0.1)],
+                None,
+                "[fixed]\ntau = -1\nmu_prime = 0.1\n",
+            ),
+            (vec![("mu_prime", 0.1)], None, "[fixed]\nmu_prime = 0.1\n"),
+            (vec![("tau", 1.0)], None, "[fixed]\ntau = 1\n"),
+            (
+                vec![("tau", 1.0), ("mu_prime", 0.1), ("v0", 1.0)],
+                None,
+                "[fixed]\ntau = 1\nmu_prime = 0.1\nv0 = 1\n",
+            ),
+            (
+                vec![("tau", 1.0), ("v0", 1.0), ("mu0", 0.5)],
+                weakening(),
+                &*format!("[fixed]\ntau = 1\nv0 = 1\n{law}mu0 = 0.5\n"),
+            ),
+            (
+                vec![("tau", 1.0), ("v0", 1.0), ("mu0", 2.0), ("v_s", 0.5)],
+                weakening(),
+                &*format!("[fixed]\ntau = 1\nv0 = 1\n{law}mu0 = 2\nv_s = 0.5\n"),
+            ),
+        ] {
+            let told = Setting::checked(numbers, law, &[]).unwrap_err();
+            let expected = PointSpec::read(text, PointOf::Sliding).unwrap_err();
+            let expected = SpecError {
+                span: None,
+                ..expected
+            };
+            assert_eq!(told, expected, "{text}");
+        }
+        let twice = [("tau", 1.0), ("tau", 2.0)];
+        let told = Setting::checked(twice, None, &[]).unwrap_err();
+        assert_eq!(told.message, "tau is given twice");
+        let unknown = Setting::checked([("alpha_w", 1.0)], None, &[]).unwrap_err();
+        assert!(unknown.help.unwrap().starts_with("did you mean `alpha_v`?"));
+        let not_finite = [("tau", f64::NAN), ("mu_prime", 0.1)];
+        assert!(Setting::checked(not_finite, None, &[]).is_err());
+    }
+
+    #[test]
+    fn what_varies_needs_no_value() {
+        let law = Some(LawKind::Formula(Formula::Coulomb));
+        let numbers = [("mu0", 0.5), ("alpha_n", -2.0)];
+        let varied = [Parameter::Tau, Parameter::V0];
+        let setting = Setting::checked(numbers, law.clone(), &varied).unwrap();
+        assert_eq!(setting.get(Parameter::AlphaN), -2.0);
+        assert!(setting.get(Parameter::V0).is_nan());
+        assert!(Setting::checked(numbers, law, &varied[..1]).is_err());
+    }
+}

@@ -1,0 +1,78 @@
+//! What can be said: parameters, fields, laws, units, settings, and the files that name them.
+//!
+//! - `axis`: axis values, each from its index alone
+//! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
+//! - `best_plane`: the planes of a sweep in which the best setting is searched for
+//! - `beyond_curve`: remarks on velocities beyond the points of a measured friction law
+//! - `case_file`: the case file: one motion, read and checked once
+//! - `catalogue`: enumerations with a table of facts, one row for each value
+//! - `command`: the command line for a setting
+//! - `draft`: reads a sweep file, once
+//! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
+//! - `friction_table`: the points of a table from a sweep file or from two columns
+//! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
+//! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
+//! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
+//!   constructor
+//! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
+//! - [`linear_model`]: the feedback, the groups and the linear model of a setting
+//! - `map_names`: the names in a map that no parameter of a system may have; the most axes
+//! - `own_system`: a system from a file with values of its own parameters, in a setting
+//! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
+//! - `point_file`: a point of parameter space as text
+//! - `quantity`: the quantity of an axis: a parameter of slipmap, or one of a system's own
+//! - `regime_at_v0`: regimes of a working velocity, by name
+//! - `search`: the search for critical velocities: its protocol, and the share recomputed
+//! - `setting_text`: a setting as tables of a sweep or case file
+//! - `simulation`: how far and how exactly motions are followed; the motion of a setting
+//! - `source`: what fields are computed from
+//! - `spec`: a sweep as described by its file
+//! - `spec_values`: the values of a sweep file's keys
+//! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
+//!   values of them
+//! - `system_draft`: the system of a sweep: its parameters, and what it cannot have
+//! - `table_file`: a sweep or case file with the contents of the files that it names
+//! - `units`: the units of a sweep
+//! - `values`: one value for every parameter, and which of them must be given
+//! - `vc_keys`: a sweep file's keys for the critical velocity
+
+pub mod axis;
+pub mod basin;
+pub mod best_plane;
+mod beyond_curve;
+pub mod case_file;
+mod catalogue;
+pub mod command;
+mod draft;
+pub mod field;
+pub mod friction_table;
+mod given;
+pub mod keys;
+pub mod law_kind;
+mod limit_spec;
+pub mod linear_model;
+pub mod map_names;
+mod own_system;
+pub mod parameter;
+pub mod point_file;
+pub mod quantity;
+pub mod regime_at_v0;
+pub mod search;
+pub mod setting_text;
+pub mod simulation;
+pub mod source;
+pub mod spec;
+mod spec_values;
+pub mod system;
+mod system_draft;
+pub mod table_file;
+pub mod units;
+pub mod values;
+mod vc_keys;
+
+pub use axis::Axis;
+pub use case_file::CaseSpec;
+pub use field::Field;
+pub use parameter::Parameter;
+pub use spec::SweepSpec;
+pub use values::Setting;

@@ -1,0 +1,73 @@
+//! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`. Reading them gives the same
+//! setting.
+
+use super::law_kind::LawKind;
+use super::parameter::{Group, Parameter};
+use super::units::Units;
+use super::values::Setting;
+use crate::model::table::TableColumn;
+
+/// A number as text that is read as the same number.
+#[must_use]
+pub fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// A table of the `wanted` parameters.
+#[must_use]
+pub fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
+    let mut text = format!("\n[{name}]\n");
+    for parameter in Parameter::ALL.into_iter().filter(|&p| wanted(p)) {
+        let value = number(setting.get(parameter));
+        text += &format!("{} = {value}\n", parameter.name());
+    }
+    text
+}
+
+/// Whether a point of this setting has the parameter.
+#[must_use]
+pub fn of_point(setting: &Setting, parameter: Parameter) -> bool {
+    !parameter.of_start() && setting.uses(parameter)
+}
+
+/// The tables of a setting, with its `wanted` parameters but without its start.
+#[must_use]
+pub fn setting_text(
+    setting: &Setting,
+    units: &Units,
+    wanted: impl Fn(Parameter) -> bool,
+) -> String {
+    let wanted = |parameter| wanted(parameter) && of_point(setting, parameter);
+    let fixed = |p: Parameter| wanted(p) && p.group() != Group::Law;
+    let mut text = table("fixed", setting, fixed);
+    if let Some(law) = setting.law() {
+        text += &table("friction", setting, |p| {
+            wanted(p) && p.group() == Group::Law
+        });
+        text += &format!("law = \"{}\"\n", law.name());
+        if let LawKind::Table(points) = law {
+            for (column, values) in [
+                (TableColumn::Speeds, points.speeds()),
+                (TableColumn::MuK, points.mu_k()),
+            ] {
+                let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
+                text += &format!("{} = [{}]\n", column.name(), values.join(", "));
+            }
+        }
+    }
+    text += &units_text(units);
+    text.trim_start().to_owned()
+}
+
+fn units_text(units: &Units) -> String {
+    match &units.force_length_time {
+        None => String::new(),
+        Some(names) => {
+            let keys = ["force", "length", "time"].iter().zip(names);
+            let lines: String = keys
+                .map(|(key, name)| format!("{key} = \"{name}\"\n"))
+                .collect();
+            format!("\n[units]\n{lines}")
+        }
+    }
+}

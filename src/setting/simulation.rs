@@ -1,0 +1,179 @@
+//! How far and how exactly motions are followed, and the motion of a setting: common to sweep and
+//! case files.
+
+use std::ops::{Range, RangeInclusive};
+
+use super::keys::{SIMULATION, names};
+use super::parameter::{LARGEST, Parameter};
+use super::values::Setting;
+use crate::model::ModelError;
+use crate::slip::case::{Case, Start};
+use crate::slip::motion::Accuracy;
+use crate::text::Shown;
+use crate::text::toml_reader::{Entry, SpecError};
+
+/// Default horizon, from switch-on, in units of √(M/κ).
+const HORIZON: f64 = 1000.0;
+/// Default limit of the steps of a motion: about a second.
+const STEPS: u64 = 1_000_000;
+/// The most steps that a file may ask for.
+const MOST_STEPS: u64 = 1_000_000_000;
+/// Times and lengths that are greater than zero.
+pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
+
+/// The parameters that motions do not support.
+pub const NOT_IN_MOTIONS: &[Parameter] = &[
+    Parameter::LoadLag,
+    Parameter::VelocityLag,
+    Parameter::SensorLag,
+];
+
+/// The keys `horizon`, `tolerance` and `steps`, of a case file or of the table `[simulation]` of a
+/// sweep file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// The time until which the motion is followed; none for 1000 √(M/κ) after switch-on.
+    pub horizon: Option<f64>,
+    /// Relative error allowed in a step.
+    pub tolerance: f64,
+    /// The most steps.
+    pub steps: u64,
+    /// The share of v0 by which a block is faster than it is pulled at t = 0, if no start is given.
+    pub disturbance: f64,
+    horizon_place: Option<Range<usize>>,
+}
+
+/// The disturbance of a motion without a given start: exactly in equilibrium a block would stay
+/// there, stable or not.
+pub const DISTURBED: f64 = 0.01;
+
+impl Default for Simulation {
+    fn default() -> Self {
+        Self {
+            horizon: None,
+            tolerance: Accuracy::default().tolerance,
+            steps: STEPS,
+            disturbance: 0.0,
+            horizon_place: None,
+        }
+    }
+}
+
+/// A remark on a start that is not given, where sliding is disturbed by this share of v0; none
+/// without a disturbance.
+#[must_use]
+pub fn assumed_start(disturbance: f64) -> Option<String> {
+    (disturbance != 0.0).then(|| {
+        format!(
+            "none is given: each block begins with x_dot0 = {} v0, {} % faster than it is pulled",
+            1.0 + disturbance,
+            100.0 * disturbance,
+        )
+    })
+}
+
+impl Simulation {
+    /// Reads an entry if it is one of the keys; returns whether it is.
+    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
+        match entry.key {
+            "horizon" => {
+                self.horizon = Some(entry.number_within(POSITIVE)?);
+                self.horizon_place = Some(entry.span.clone());
+            }
+            "tolerance" => self.tolerance = entry.number_within(1e-15..=1e-3)?,
+            "steps" => {
+                self.steps = match entry.whole()? {
+                    steps @ 1..=MOST_STEPS => steps,
+                    other => {
+                        let message = format!("{other} is outside its range: 1 to {MOST_STEPS}");
+                        return Err(entry.error(message));
+                    }
+                };
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Reads the table `[simulation]`.
+    pub(super) fn read_table(&mut self, table: &Entry) -> Result<(), SpecError> {
+        for entry in table.table()? {
+            if !self.read(&entry)? {
+                return Err(entry.unknown(&names(&SIMULATION)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A remark on a start that is not given; none where motions are not disturbed.
+    #[must_use]
+    pub fn assumed_start(&self) -> Option<String> {
+        assumed_start(self.disturbance)
+    }
+
+    /// Checks that the horizon, if given, is later than `switch_on`, the value of `name`.
+    pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
+        match (&self.horizon, &self.horizon_place) {
+            (Some(horizon), Some(place)) if *horizon <= switch_on => {
+                let message = format!(
+                    "horizon: {} is not later than {name}, which is {}",
+                    Shown(*horizon),
+                    Shown(switch_on)
+                );
+                Err(SpecError::at(place.clone(), message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The motion of `setting`. Control acts from `switch_on` on, unless the setting has a phase of
+    /// switch-on. Without a given start, the block slides at v0, faster by the disturbance. None
+    /// without a friction law.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn case(&self, setting: &Setting, switch_on: f64) -> Result<Option<Case>, ModelError> {
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
+        let Some(law) = setting.friction_law()? else {
+            return Ok(None);
+        };
+        let oscillator = setting.oscillator()?;
+        let v0 = setting.get(Parameter::V0);
+        let given = |p: Parameter| Some(setting.get(p)).filter(|value| !value.is_nan());
+        let phase = given(Parameter::SwitchOnPhase);
+        let start = match phase {
+            Some(_) => Start::AfterRelease,
+            None => Start::State {
+                x_dot0: given(Parameter::XDot0).unwrap_or((1.0 + self.disturbance) * v0),
+                a0: given(Parameter::A0).unwrap_or_else(|| {
+                    law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness())
+                }),
+            },
+        };
+        // Without gains there is nothing to switch on.
+        let switch_on = match setting.control().act() {
+            true => phase.unwrap_or(switch_on),
+            false => f64::INFINITY,
+        };
+        let begun = if switch_on.is_finite() {
+            switch_on
+        } else {
+            0.0
+        };
+        let by_default = || begun + HORIZON * oscillator.time_unit();
+        Ok(Some(Case {
+            oscillator,
+            law,
+            feedback: setting.feedback(),
+            v0,
+            switch_on,
+            start,
+            horizon: self.horizon.unwrap_or_else(by_default),
+            steps: self.steps,
+            accuracy: Accuracy {
+                tolerance: self.tolerance,
+                ..Accuracy::default()
+            },
+        }))
+    }
+}

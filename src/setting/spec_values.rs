@@ -1,0 +1,126 @@
+//! The values of a sweep file's keys.
+
+use super::axis::{Spacing, spaced};
+use super::field::{Field, fields_meant, known_fields};
+use super::keys::{RANGE, TOLERANCE, names};
+use super::quantity::Quantity;
+use crate::linear::MarginalTolerance;
+use crate::text::Shown;
+use crate::text::toml_reader::{Entry, SpecError};
+
+/// The most degrees of stability.
+const MOST_DEGREES: usize = 16;
+/// The largest degree of stability, in 1/time.
+const LARGEST_DEGREE: f64 = 1e12;
+
+/// The values of an axis of at most `most` points.
+pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError> {
+    let (mut from, mut to, mut points, mut spacing) = (None, None, None, Spacing::Linear);
+    for entry in axis.table()? {
+        match entry.key {
+            "from" => from = Some(entry.number()?),
+            "to" => to = Some(entry.number()?),
+            "points" => points = Some(entry.whole()?),
+            "spacing" => {
+                spacing = match entry.string()? {
+                    "linear" => Spacing::Linear,
+                    "log" => Spacing::Log,
+                    other => {
+                        return Err(entry
+                            .error(format!("unknown spacing \"{other}\""))
+                            .help("known: linear, log"));
+                    }
+                }
+            }
+            _ => return Err(entry.unknown(&names(&RANGE))),
+        }
+    }
+    let missing = |name| axis.error(format!("{name} is missing"));
+    let from = from.ok_or_else(|| missing("from"))?;
+    let to = to.ok_or_else(|| missing("to"))?;
+    let points = points.ok_or_else(|| missing("points"))?;
+    if points > most {
+        let message = format!("points = {points} is outside its range: 2 to {most}");
+        return Err(axis.error(message));
+    }
+    spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
+}
+
+pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, SpecError> {
+    let elements = axis
+        .array()
+        .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
+    elements
+        .iter()
+        .map(|element| {
+            let value = element.number()?;
+            parameter
+                .check(value)
+                .map_err(|why| SpecError::at(element.span.clone(), why))
+        })
+        .collect()
+}
+
+pub(super) fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
+    let elements = entry
+        .array()
+        .map_err(|e| e.help("for example: degree_of_stability = [0.05, 0.1]"))?;
+    if elements.is_empty() || elements.len() > MOST_DEGREES {
+        let message = format!("{} values; 1 to {MOST_DEGREES} are allowed", elements.len());
+        return Err(entry.error(message));
+    }
+    let mut degrees: Vec<f64> = Vec::new();
+    for element in &elements {
+        let value = element.number()?;
+        if !(1.0 / LARGEST_DEGREE..=LARGEST_DEGREE).contains(&value) {
+            return Err(element.error(format!(
+                "{} is outside its range: greater than 0, between 1e-12 and 1e12",
+                Shown(value)
+            )));
+        }
+        if degrees.last().is_some_and(|last| *last >= value) {
+            return Err(element.error("the values must be strictly increasing"));
+        }
+        degrees.push(value);
+    }
+    Ok(degrees)
+}
+
+pub(super) fn read_field(entry: &Entry) -> Result<Field, SpecError> {
+    let name = entry.string()?;
+    Field::from_name(name).ok_or_else(|| {
+        entry
+            .error(format!("unknown field \"{name}\""))
+            .help(fields_meant(name))
+    })
+}
+
+pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
+    let mut fields = Vec::new();
+    for element in entry.array()? {
+        let field = read_field(&element)?;
+        if fields.contains(&field) {
+            return Err(element.error(format!("\"{}\" is listed twice", field.name())));
+        }
+        fields.push(field);
+    }
+    if fields.is_empty() {
+        return Err(entry
+            .error("the list is empty")
+            .help(format!("known: {}", known_fields())));
+    }
+    Ok(Field::with_bounds(fields))
+}
+
+pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, SpecError> {
+    let mut result = MarginalTolerance::default();
+    for entry in tolerance.table()? {
+        match entry.key {
+            "marginal" => {
+                result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
+            }
+            _ => return Err(entry.unknown(&names(&TOLERANCE))),
+        }
+    }
+    Ok(result)
+}

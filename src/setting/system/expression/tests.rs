@@ -1,0 +1,265 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::linear::general::polynomial::MOST_DEGREE;
+use crate::setting::system::tape::Stacks;
+
+const NAMES: [&str; 3] = ["a", "b_2", "tau"];
+
+fn coefficients(text: &str, values: &[f64]) -> Vec<f64> {
+    let tape = read(text, &NAMES).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+    let found = tape.at(values, &mut Stacks::default());
+    found
+        .unwrap_or_else(|e| panic!("{text}: {e:?}"))
+        .coefficients()
+        .to_vec()
+}
+
+#[test]
+fn what_is_written_is_what_is_evaluated() {
+    let (a, b, tau) = (2.0, -3.0, 0.5_f64);
+    for (text, expected) in [
+        ("0", vec![0.0]),
+        ("-9.1e-05", vec![-9.1e-05]),
+        (".5 + 1.E2", vec![100.5]),
+        ("s", vec![0.0, 1.0]),
+        ("s^2 + 2*a*s + 1", vec![1.0, 4.0, 1.0]),
+        ("-s^2", vec![0.0, 0.0, -1.0]),
+        ("(-s)^2", vec![0.0, 0.0, 1.0]),
+        ("- - 3", vec![3.0]),
+        ("1 - 2 - 3", vec![-4.0]),
+        ("8/2/2", vec![2.0]),
+        ("2*3^2", vec![18.0]),
+        ("a^-2", vec![0.25]),
+        ("a*-b_2", vec![6.0]),
+        ("a - s", vec![2.0, -1.0]),
+        ("(s + 1)*(s - 1)/a", vec![-0.5, 0.0, 0.5]),
+        ("(1 + a*s)^3", vec![1.0, 6.0, 12.0, 8.0]),
+        ("s^0", vec![1.0]),
+        ("min(a, b_2, 7) + max(a, b_2)", vec![-1.0]),
+        ("sqrt(a + 2)*s", vec![0.0, 2.0]),
+        ("exp(0) + log(1) + sin(0) + cos(0)", vec![2.0]),
+        ("tau*s + s*tau", vec![0.0, 1.0]),
+        ("s*s*s - s^3", vec![0.0]),
+        ("\n (\t(s))\r\n", vec![0.0, 1.0]),
+    ] {
+        assert_eq!(coefficients(text, &[a, b, tau]), expected, "{text}");
+    }
+}
+
+/// Texts, each with the part that the error points at.
+#[test]
+fn what_is_not_understood_is_told_in_its_place() {
+    for (text, part, says) in [
+        ("", "", "found the end"),
+        ("2*", "", "found the end"),
+        ("2 s", "s", "expected an operator"),
+        ("2zeta", "z", "expected an operator"),
+        ("a**2", "**", "found `*`"),
+        ("a*/2", "/", "found `/`"),
+        ("s + ζ", "ζ", "found `ζ`"),
+        ("(s + 1", "(", "not closed"),
+        ("(s + 1]", "]", "found `]`"),
+        ("s + 1)", ")", "closes nothing"),
+        ("s, 1", ",", "no place here"),
+        ("()", ")", "found `)`"),
+        ("b2*s", "b2", "unknown name `b2`"),
+        ("sgrt(a)", "sgrt", "unknown function `sgrt`"),
+        ("a(s + 1)", "a", "not a function"),
+        ("s (s + 1)", "s", "not a function"),
+        ("sqrt + 1", "sqrt", "needs an argument"),
+        ("sqrt(a, b_2)", "sqrt(a, b_2)", "takes one, 2 given"),
+        ("1 + max(a)", "max(a)", "takes two or more"),
+        ("sqrt(a", "(", "not closed"),
+        ("exp(-s*tau)", "-s*tau", "exp of what has s in it"),
+        ("1/(s + 1)", "(s + 1)", "division by what has s"),
+        ("s^-1", "-1", "negative power"),
+        ("s^a", "a", "whole number"),
+        ("a^0.5", "0.5", "whole number"),
+        ("2^3^2", "3^2", "whole number"),
+        ("a^65", "65", "too large"),
+        ("1e999", "1e999", "too large"),
+        (".", ".", "expected a number"),
+        ("(1 + s)^17", "(1 + s)^17", "degree 17"),
+        ("1 + s^9*(s^8 - 1)", "s^9*(s^8 - 1)", "degree 17"),
+    ] {
+        let error = read(text, &NAMES).expect_err(text);
+        assert_eq!(&text[error.place.clone()], part, "{text}: {error:?}");
+        assert!(error.message.contains(says), "{text}: {error:?}");
+    }
+    let error = read("b2 + 1", &NAMES).unwrap_err();
+    assert!(error.help.unwrap().starts_with("did you mean `b_2`?"));
+    let error = read("sgrt(2)", &NAMES).unwrap_err();
+    assert!(error.help.unwrap().starts_with("did you mean `sqrt`?"));
+}
+
+/// A text that is too deep or too long is refused, without overflow.
+#[test]
+fn long_texts_are_refused() {
+    let many = |part: &str, n: usize| part.repeat(n);
+    for text in [
+        many("(", 4000),
+        many("-", 4000),
+        many("sqrt(", 800),
+        many("1+", 2000) + "1" + &many(" ", 1000),
+    ] {
+        assert!(read(&text, &NAMES).is_err(), "{text}");
+    }
+    let long = many("a+", 2000) + "a";
+    assert_eq!(coefficients(&long, &[0.5, 0.0, 0.0]), [1000.5]);
+    assert!(read(&(many("(", 64) + "1" + &many(")", 64)), &NAMES).is_ok());
+}
+
+#[test]
+fn what_has_no_value_is_told_in_its_place() {
+    for (text, part) in [
+        ("s + 1/(a - 2)", "1/(a - 2)"),
+        ("s/(a - 2) + 1", "s/(a - 2)"),
+        ("sqrt(b_2)", "sqrt(b_2)"),
+        ("1 + log(0*a)*s", "log(0*a)"),
+        ("exp(1e5)", "exp(1e5)"),
+        ("(1e300*s + 1)*(1e300*s)", "(1e300*s + 1)*(1e300*s)"),
+    ] {
+        let tape = read(text, &NAMES).unwrap();
+        let place = tape
+            .at(&[2.0, -3.0, 0.5], &mut Stacks::default())
+            .unwrap_err();
+        assert_eq!(&text[place], part, "{text}");
+    }
+}
+
+/// An expression as a tree, evaluated by the rules of arithmetic, independently of `read`.
+#[derive(Debug, Clone)]
+enum Tree {
+    Number(f64),
+    Name(usize),
+    Variable,
+    Negated(Box<Self>),
+    Two(char, Box<Self>, Box<Self>),
+    Power(Box<Self>, u32),
+}
+
+impl Tree {
+    /// The tree as text, with every parenthesis or with as few as precedence allows.
+    fn print(&self, all: bool) -> String {
+        let inside = |of: &Self, wrapped: bool| match wrapped {
+            true => format!("({})", of.print(all)),
+            false => of.print(all),
+        };
+        match self {
+            Self::Number(value) => format!("{value:?}"),
+            Self::Name(index) => NAMES[*index].into(),
+            Self::Variable => VARIABLE.into(),
+            Self::Negated(of) => format!("-{}", inside(of, all || of.strength() < 2)),
+            Self::Power(of, n) => format!("{}^{n}", inside(of, all || of.strength() < 4)),
+            Self::Two(op, a, b) => {
+                let own = self.strength();
+                let (a, b) = (
+                    inside(a, all || a.strength() < own),
+                    inside(b, all || b.strength() <= own),
+                );
+                format!("{a} {op} {b}")
+            }
+        }
+    }
+
+    fn strength(&self) -> u8 {
+        match self {
+            Self::Two('+' | '-', ..) => 0,
+            Self::Two(..) => 1,
+            Self::Negated(_) => 2,
+            Self::Power(..) => 3,
+            Self::Number(value) if value.is_sign_negative() => 0,
+            Self::Number(_) | Self::Name(_) | Self::Variable => 4,
+        }
+    }
+
+    fn degree(&self) -> usize {
+        match self {
+            Self::Number(_) | Self::Name(_) => 0,
+            Self::Variable => 1,
+            Self::Negated(of) => of.degree(),
+            Self::Two('*', a, b) => a.degree() + b.degree(),
+            Self::Two(_, a, b) => a.degree().max(b.degree()),
+            Self::Power(of, n) => of.degree() * *n as usize,
+        }
+    }
+
+    /// The value at `s`, and the same without cancellation.
+    fn value(&self, s: f64, values: &[f64]) -> (f64, f64) {
+        let of = |tree: &Self| tree.value(s, values);
+        match self {
+            Self::Number(value) => (*value, value.abs()),
+            Self::Name(index) => (values[*index], values[*index].abs()),
+            Self::Variable => (s, s.abs()),
+            Self::Negated(a) => (-of(a).0, of(a).1),
+            Self::Power(a, n) => (of(a).0.powi(*n as i32), of(a).1.powi(*n as i32)),
+            Self::Two(op, a, b) => {
+                let ((a, size_a), (b, size_b)) = (of(a), of(b));
+                match op {
+                    '+' => (a + b, size_a + size_b),
+                    '-' => (a - b, size_a + size_b),
+                    _ => (a * b, size_a * size_b),
+                }
+            }
+        }
+    }
+}
+
+fn tree() -> impl Strategy<Value = Tree> {
+    let leaf = prop_oneof![
+        prop_oneof![(0..9_u8).prop_map(f64::from), 1e-9..1e3_f64].prop_map(Tree::Number),
+        (0..NAMES.len()).prop_map(Tree::Name),
+        Just(Tree::Variable),
+    ];
+    leaf.prop_recursive(6, 24, 2, |inner| {
+        let op = prop_oneof![Just('+'), Just('-'), Just('*')];
+        prop_oneof![
+            inner.clone().prop_map(|a| Tree::Negated(Box::new(a))),
+            (op, inner.clone(), inner.clone()).prop_map(|(op, a, b)| Tree::Two(
+                op,
+                Box::new(a),
+                Box::new(b)
+            )),
+            (inner, 0..4_u32).prop_map(|(a, n)| Tree::Power(Box::new(a), n)),
+        ]
+    })
+}
+
+proptest! {
+    /// A printed tree is read as the same polynomial, however many parentheses it has.
+    #[test]
+    fn printed_trees_are_read_as_they_are(
+        tree in tree().prop_filter("a small degree", |t| t.degree() <= MOST_DEGREE),
+        values in proptest::array::uniform3(-3.0..3.0_f64),
+        s in -1.5..1.5_f64,
+    ) {
+        let (exact, size) = tree.value(s, &values);
+        for all in [false, true] {
+            let text = tree.print(all);
+            let tape = match read(&text, &NAMES) {
+                Ok(tape) => tape,
+                // Powers within powers of numbers, and signs, can be more than there may be.
+                Err(error) => panic!("{text}: {error:?}"),
+            };
+            prop_assert!(tape.degree() <= tree.degree());
+            let Ok(found) = tape.at(&values, &mut Stacks::default()) else {
+                continue;
+            };
+            let value = |of: &[f64]| of.iter().rev().fold(0.0, |sum, c| sum * s + c);
+            let apart = (value(found.coefficients()) - exact).abs();
+            prop_assert!(apart <= 1e-12 * size + 1e-300, "{text}: {apart:e} of {size:e}");
+            // The bound is no smaller than the actual error, and not much larger.
+            let bound: f64 = found.errors().iter().rev().fold(0.0, |sum, e| sum * s.abs() + e);
+            prop_assert!(bound <= 1e-11 * size + 1e-290, "{text}: {bound:e} of {size:e}");
+        }
+    }
+
+    /// Nothing makes the reader panic.
+    #[test]
+    fn any_text_is_read_or_refused(text in "[-+*/^() .,0-9a-eswxτ_]{0,40}") {
+        if let Err(error) = read(&text, &NAMES) {
+            prop_assert!(text.get(error.place).is_some(), "{text}");
+        }
+    }
+}

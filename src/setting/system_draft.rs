@@ -1,0 +1,127 @@
+//! The system of a sweep: its parameters, and what it cannot have.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::field::Field;
+use super::quantity::Quantity;
+use super::source::{OfLinear, OfMargins, OfRoots, Source};
+use super::system::{SystemModel, shipped};
+use super::values::Setting;
+use crate::text::nearest::did_you_mean;
+use crate::text::toml_reader::{Entry, SpecError};
+
+/// Keys of a sweep file that are about a block on its spring.
+const OF_THE_BLOCK: [&str; 8] = [
+    "friction",
+    "start",
+    "simulation",
+    "basin",
+    "protocol",
+    "phase",
+    "verify",
+    "best",
+];
+
+/// The system of a sweep, and the values that the file gives its parameters.
+pub(super) struct SystemDraft {
+    pub model: Arc<SystemModel>,
+    /// The values of parameters that are no axes.
+    pub setting: Setting,
+    /// The given parameters, with their places.
+    pub given: Vec<(Quantity, Range<usize>)>,
+}
+
+impl SystemDraft {
+    /// Reads the key `system` of the text `whole`: a table, or the name of a shipped system.
+    pub(super) fn read(entry: &Entry, whole: &str) -> Result<Self, SpecError> {
+        let model = if entry.is_table() {
+            SystemModel::of_table(entry, whole)?
+        } else {
+            let name = entry.string()?;
+            shipped::system(name).ok_or_else(|| {
+                entry
+                    .error(format!("no system of the name \"{name}\""))
+                    .help(shipped::meant(name))
+            })?
+        };
+        let model = Arc::new(model);
+        Ok(Self {
+            setting: Setting::of_system(Arc::clone(&model)),
+            model,
+            given: Vec::new(),
+        })
+    }
+
+    /// The parameter that a key names; it is recorded as given.
+    pub(super) fn give(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
+        let all = self.model.quantities();
+        let Some(found) = all.iter().find(|of| of.name() == entry.key) else {
+            let names: Vec<&str> = all.iter().map(Quantity::name).collect();
+            let meant = did_you_mean(entry.key, names.iter().copied());
+            let message = format!("the system has no parameter `{}`", entry.key);
+            return Err(SpecError::at(entry.key_span.clone(), message)
+                .help(format!("{meant}its parameters: {}", names.join(", "))));
+        };
+        if self.given.iter().any(|(of, _)| of == found) {
+            let message = format!("{} is given twice", found.name());
+            return Err(SpecError::at(entry.key_span.clone(), message)
+                .help("a parameter is either an axis or a fixed value"));
+        }
+        self.given.push((found.clone(), entry.key_span.clone()));
+        Ok(found.clone())
+    }
+
+    /// Reads the table `[fixed]`.
+    pub(super) fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
+        for entry in fixed.table()? {
+            let of = self.give(&entry)?;
+            let checked = of.check(entry.number()?);
+            let value = checked.map_err(|why| SpecError::at(entry.span.clone(), why))?;
+            self.setting.vary(&of, value);
+        }
+        Ok(())
+    }
+
+    /// Refuses a key that a sweep of a system cannot have.
+    pub(super) fn check_key(entry: &Entry) -> Result<(), SpecError> {
+        if OF_THE_BLOCK.contains(&entry.key) {
+            return Err(entry.elsewhere(
+                "it is about a block on its spring; a system from a file has counts, roots and \
+                 delays alone",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Why a field is not available for a system, and a suggestion.
+pub(super) fn refused(field: Field, model: &SystemModel) -> Option<(&'static str, &'static str)> {
+    const OTHERS: &str = "n_unstable, abscissa, frequency, relaxation_time, reason and others are \
+        of any system";
+    match field.source() {
+        Source::Line if field == Field::DelayMargin && model.depends_on_delay() => Some((
+            "it needs a line of delays, and P or Q depends on tau",
+            "n_unstable and the roots are counted delay by delay",
+        )),
+        Source::Roots(OfRoots::Derivative(_)) => {
+            Some(("it is known of the letter's parameters alone", OTHERS))
+        }
+        Source::Linear(OfLinear::StiffnessRatio) => {
+            Some(("it is of the rate-and-state law", OTHERS))
+        }
+        Source::Margins(OfMargins::Latency) if !model.is_feedback() => Some((
+            "the system has no latency",
+            "a system of B and A has one, one of P and Q has not",
+        )),
+        Source::Line
+        | Source::Roots(_)
+        | Source::Linear(_)
+        | Source::Margins(OfMargins::Latency) => None,
+        Source::Margins(_) => Some(("it needs the block on its spring", OTHERS)),
+        _ => Some((
+            "it needs the block on its spring; a system from a file has no motions",
+            OTHERS,
+        )),
+    }
+}

@@ -1,0 +1,23 @@
+//! Text that people write and read: numbers, names that are meant, TOML with places.
+//!
+//! - `hexadecimal`: bytes as hexadecimal digits
+//! - `nearest`: suggestions for unknown names
+//! - `number`: numbers as messages show them
+//! - `toml_reader`: TOML with the place of every key and value
+//! - `toml_size`: bounds the memory for reading TOML
+
+#[cfg(feature = "sweep")]
+mod hexadecimal;
+#[cfg(feature = "sweep")]
+pub mod nearest;
+mod number;
+#[cfg(feature = "sweep")]
+pub(crate) mod toml_reader;
+#[cfg(feature = "sweep")]
+mod toml_size;
+
+#[cfg(feature = "sweep")]
+pub use hexadecimal::in_hexadecimal;
+pub use number::Shown;
+#[cfg(feature = "sweep")]
+pub use toml_reader::SpecError;
