@@ -115,6 +115,8 @@ use std::sync::Arc;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use colours::Colours;
+use failure::Failure;
+use json::AnswerSchema;
 
 /// The order of flags that every command has: behind all others.
 const LAST: usize = 1000;
@@ -139,53 +141,78 @@ struct Cli {
     command: Command,
 }
 
-#[derive(Subcommand)]
-enum Command {
+/// What a command answers with `--json`.
+type Described = fn() -> AnswerSchema;
+
+/// Makes the enumeration of commands from a row for each: its name, its file, which has its `Args`
+/// and its `main`, and `described` where the file has that function for the schema of its `--json`.
+macro_rules! commands {
+    ($($(#[$about:meta])* $name:ident($file:ident $(, $described:ident)?),)*) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($(#[$about])* $name($file::Args),)*
+        }
+
+        impl Command {
+            fn main(&self) -> Result<(), Failure> {
+                match self {
+                    $(Self::$name(args) => $file::main(args),)*
+                }
+            }
+        }
+
+        /// The commands with `--json`, and what they answer.
+        const WITH_JSON: &[(&str, Described)] =
+            &[$($((stringify!($file), $file::$described),)?)*];
+    };
+}
+
+commands! {
     /// Compute a map: from a sweep file to HDF5 and a picture
-    Run(run::Args),
+    Run(run),
     /// Put the shards of a map together
-    Merge(merge::Args),
+    Merge(merge),
     /// Say how far a map is, from another terminal
-    Status(status::Args),
+    Status(status, described),
     /// Check a map: its checksums, its schema, and a sample of its cells by other methods; or
     /// compute the motion of a trace again
-    Verify(verify::Args),
+    Verify(verify, described),
     /// Say what a sweep or a motion would cost, without computing it
-    Plan(plan::Args),
+    Plan(plan, described),
     /// Everything about one point of parameter space
-    Point(point::Args),
+    Point(point, described),
     /// How far one point is from the boundary of stability, in every direction
-    Margins(margins::Args),
+    Margins(margins, described),
     /// The gain and delay of fastest decay, for every stable region
-    Best(best::Args),
+    Best(best, described),
     /// Show charts in a browser, computed while you look
-    Serve(serve::Args),
+    Serve(serve),
     /// Read a map for `serve`
     #[command(hide = true)]
-    ReadMap(read_map::Args),
+    ReadMap(read_map),
     /// The critical velocity at one point
-    Vc(vc::Args),
+    Vc(vc, described),
     /// The share of starts from which control ends in sliding, with its error
-    Basin(basin::Args),
+    Basin(basin, described),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
-    Simulate(simulate::Args),
+    Simulate(simulate, described),
     /// Draw a map or a trace as PNG, SVG or PDF
-    Plot(plot::Args),
+    Plot(plot),
     /// Write what a map or a trace holds as text (CSV)
-    Export(export::Args),
+    Export(export),
     /// Say what a map or a trace holds
-    Info(info::Args),
+    Info(info, described),
     /// Reproduce the letter: every claim with what is found, and a verdict
-    Reproduce(reproduce::Args),
+    Reproduce(reproduce, described),
     /// Print the JSON Schema of what another command prints with --json
-    Schema(schema::Args),
+    Schema(schema),
     /// Print the completions of a shell
-    Completions(completions::Args),
+    Completions(completions),
     /// Print the manual page of a command, or write those of all
-    Man(man::Args),
+    Man(man),
     /// Print a page of the guide's reference
     #[command(hide = true)]
-    Reference(reference::Args),
+    Reference(reference),
 }
 
 /// Prints help, or what is wrong with the arguments. File names in them may contain control
@@ -218,30 +245,7 @@ pub(crate) fn main() -> ExitCode {
     // This signal is caught and ignored: exceeding a limit on file sizes then makes the write fail
     // instead of ending the process. If it cannot be caught, the process ends.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
-    let result = match command {
-        Command::Run(args) => run::main(&args),
-        Command::Merge(args) => merge::main(&args),
-        Command::Status(args) => status::main(&args),
-        Command::Verify(args) => verify::main(&args),
-        Command::Plan(args) => plan::main(&args),
-        Command::Point(args) => point::main(&args),
-        Command::Margins(args) => margins::main(&args),
-        Command::Best(args) => best::main(&args),
-        Command::Serve(args) => serve::main(&args),
-        Command::ReadMap(args) => read_map::main(&args),
-        Command::Vc(args) => vc::main(&args),
-        Command::Basin(args) => basin::main(&args),
-        Command::Simulate(args) => simulate::main(&args),
-        Command::Plot(args) => plot::main(&args),
-        Command::Export(args) => export::main(&args),
-        Command::Info(args) => info::main(&args),
-        Command::Reproduce(args) => reproduce::main(&args),
-        Command::Schema(args) => schema::main(&args),
-        Command::Completions(args) => completions::main(&args),
-        Command::Man(args) => man::main(&args),
-        Command::Reference(args) => reference::main(&args),
-    };
-    match result {
+    match command.main() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -1,57 +1,29 @@
 //! `slipmap schema`: the JSON Schema of the output of another command.
 
-use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
 
 use super::failure::Failure;
-use super::json::AnswerSchema;
-use super::{
-    basin, best, info, margins, plan, point, reproduce, say, simulate, status, vc, verify,
-};
+use super::{WITH_JSON, say};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The command whose --json is described
-    #[arg(value_enum)]
-    command: Command,
+    #[arg(value_parser = PossibleValuesParser::new(names()))]
+    command: String,
 }
 
-/// Commands with `--json`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Command {
-    Basin,
-    Best,
-    Info,
-    Margins,
-    Plan,
-    Point,
-    Reproduce,
-    Simulate,
-    Status,
-    Vc,
-    Verify,
-}
-
-impl Command {
-    fn described(self) -> AnswerSchema {
-        match self {
-            Self::Basin => basin::described(),
-            Self::Best => best::described(),
-            Self::Info => info::described(),
-            Self::Margins => margins::described(),
-            Self::Plan => plan::described(),
-            Self::Point => point::described(),
-            Self::Reproduce => reproduce::described(),
-            Self::Simulate => simulate::described(),
-            Self::Status => status::described(),
-            Self::Vc => vc::described(),
-            Self::Verify => verify::described(),
-        }
-    }
+/// The commands with `--json`, by name.
+fn names() -> Vec<&'static str> {
+    let mut names: Vec<_> = WITH_JSON.iter().map(|(name, _)| *name).collect();
+    names.sort_unstable();
+    names
 }
 
 /// Prints the schema.
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let schema = args.command.described().schema();
-    let text = serde_json::to_string_pretty(&schema).map_err(std::io::Error::from)?;
-    say::result(text)
+    let mut all = WITH_JSON.iter();
+    let described = all.find(|(name, _)| *name == args.command);
+    let (_, described) = described.expect("the flag takes these names only");
+    let text = serde_json::to_string_pretty(&described().schema());
+    say::result(text.map_err(std::io::Error::from)?)
 }
