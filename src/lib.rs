@@ -61,6 +61,9 @@ pub const REVISION: &str = env!("SLIPMAP_GIT_REVISION");
 #[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod answers;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
 #[cfg(doc)]

@@ -1,8 +1,11 @@
 //! The command line of slipmap.
 
-mod cli;
-
 use std::process::ExitCode;
+
+use slipmap::cli::{self, Refusing};
+
+#[global_allocator]
+static ALLOCATOR: Refusing = Refusing;
 
 fn main() -> ExitCode {
     cli::main()

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use slipmap::setting::Setting;
-use slipmap::setting::units::Units;
+use crate::setting::Setting;
+use crate::setting::units::Units;
 
 use super::json::Inputs;
 

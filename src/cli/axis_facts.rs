@@ -1,9 +1,9 @@
 //! The facts of an axis, printed alike for a sweep and for a map.
 
+use crate::report::numbers::grouped;
+use crate::setting::quantity::Quantity;
+use crate::text::Shown;
 use serde::Serialize;
-use slipmap::report::numbers::grouped;
-use slipmap::setting::quantity::Quantity;
-use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 /// An axis by its parameter: its number of values, the first and the last.

@@ -2,17 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::explore::basin::{BasinError, BasinShare, Followed};
+use crate::report::numbers::{grouped, unit_behind};
+use crate::report::table::write_starts;
+use crate::setting::basin::{Basin, Over};
+use crate::setting::point_file::PointOf;
+use crate::setting::simulation::Simulation;
+use crate::setting::units::Units;
+use crate::setting::{Parameter, Setting};
+use crate::slip::case::CaseError;
+use crate::text::Shown;
 use clap::ValueEnum;
-use slipmap::explore::basin::{BasinError, BasinShare, Followed};
-use slipmap::report::numbers::{grouped, unit_behind};
-use slipmap::report::table::write_starts;
-use slipmap::setting::basin::{Basin, Over};
-use slipmap::setting::point_file::PointOf;
-use slipmap::setting::simulation::Simulation;
-use slipmap::setting::units::Units;
-use slipmap::setting::{Parameter, Setting};
-use slipmap::slip::case::CaseError;
-use slipmap::text::Shown;
 
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};

@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use slipmap::answers::best::{Ranges, best_settings, default_ranges, robust_setting};
-use slipmap::explore::point::Point;
-use slipmap::explore::stability::Wanted;
-use slipmap::explore::vc::CriticalVelocity;
-use slipmap::model::ModelError;
-use slipmap::model::stop::Stop;
-use slipmap::setting::quantity::Quantity;
-use slipmap::setting::search::Protocol;
-use slipmap::setting::simulation::NOT_IN_MOTIONS;
-use slipmap::setting::system::SystemModel;
-use slipmap::setting::{Parameter, Setting};
-use slipmap::text::Shown;
-use slipmap::text::nearest::did_you_mean;
+use crate::answers::best::{Ranges, best_settings, default_ranges, robust_setting};
+use crate::explore::point::Point;
+use crate::explore::stability::Wanted;
+use crate::explore::vc::CriticalVelocity;
+use crate::model::ModelError;
+use crate::model::stop::Stop;
+use crate::setting::quantity::Quantity;
+use crate::setting::search::Protocol;
+use crate::setting::simulation::NOT_IN_MOTIONS;
+use crate::setting::system::SystemModel;
+use crate::setting::{Parameter, Setting};
+use crate::text::Shown;
+use crate::text::nearest::did_you_mean;
 
 use super::asked::Asked;
 use super::asks::AtAnyDelay;

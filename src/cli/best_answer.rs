@@ -1,12 +1,12 @@
 //! What `slipmap best` prints with `--json`.
 
+use crate::answers::best::{BestRegion, Ranges, RobustSetting};
+use crate::explore::margins::Margins;
+use crate::explore::point::{Point, SystemPoint};
+use crate::explore::vc::CriticalVelocity;
+use crate::linear::best::Optimum;
+use crate::sweep::relaxation_time;
 use serde::Serialize;
-use slipmap::answers::best::{BestRegion, Ranges, RobustSetting};
-use slipmap::explore::margins::Margins;
-use slipmap::explore::point::{Point, SystemPoint};
-use slipmap::explore::vc::CriticalVelocity;
-use slipmap::linear::best::Optimum;
-use slipmap::sweep::relaxation_time;
 use utoipa::ToSchema;
 
 use super::recommended::{Control, Recommended};

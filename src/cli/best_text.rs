@@ -2,10 +2,10 @@
 
 use std::io::Write;
 
-use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
-use slipmap::linear::best::Optimum;
-use slipmap::report::numbers::{counted, rounded, unit_behind};
-use slipmap::setting::{Field, Parameter};
+use crate::explore::point::{BlockPoint, Point, SystemPoint};
+use crate::linear::best::Optimum;
+use crate::report::numbers::{counted, rounded, unit_behind};
+use crate::setting::{Field, Parameter};
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;

@@ -1,12 +1,12 @@
 //! The facts of the case of one motion: `plan` prints them before it is simulated, `info` from its
 //! trace.
 
+use crate::model::Control;
+use crate::report::numbers::grouped;
+use crate::setting::{CaseSpec, Parameter};
+use crate::slip::case::Start;
+use crate::text::Shown;
 use serde::Serialize;
-use slipmap::model::Control;
-use slipmap::report::numbers::grouped;
-use slipmap::setting::{CaseSpec, Parameter};
-use slipmap::slip::case::Start;
-use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::failure::Failure;

@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use crate::report::numbers::grouped;
+use crate::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
+use crate::setting::Field;
+use crate::store::{MapFile, TraceFile, trace_reader};
+use crate::sweep::described::trace::{QUANTITIES, Quantity};
+use crate::text::nearest::did_you_mean;
 use clap::ValueEnum;
-use slipmap::report::numbers::grouped;
-use slipmap::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
-use slipmap::setting::Field;
-use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::described::trace::{QUANTITIES, Quantity};
-use slipmap::text::nearest::did_you_mean;
 
 use super::cell::{At, parse_at, place_on};
 use super::failure::Failure;

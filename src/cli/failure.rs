@@ -2,12 +2,12 @@
 
 use std::process::ExitCode;
 
+use crate::model::ModelError;
+use crate::setting::linear_model::NoAnswer;
+use crate::store::StoreError;
+use crate::text::Shown;
+use crate::text::SpecError;
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use slipmap::model::ModelError;
-use slipmap::setting::linear_model::NoAnswer;
-use slipmap::store::StoreError;
-use slipmap::text::Shown;
-use slipmap::text::SpecError;
 
 use super::excerpt::excerpt;
 use super::kind::Kind;

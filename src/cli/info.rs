@@ -4,14 +4,14 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use crate::linear::curves::StableSide;
+use crate::linear::status::FLAGS;
+use crate::report::numbers::{bytes, counted, grouped, short, unit_behind};
+use crate::setting::Field;
+use crate::store::{MapAxis, MapFile, trace_reader};
+use crate::sweep::described::schema::root;
+use crate::text::Shown;
 use serde::Serialize;
-use slipmap::linear::curves::StableSide;
-use slipmap::linear::status::FLAGS;
-use slipmap::report::numbers::{bytes, counted, grouped, short, unit_behind};
-use slipmap::setting::Field;
-use slipmap::store::{MapAxis, MapFile, trace_reader};
-use slipmap::sweep::described::schema::root;
-use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use crate::answers::trace::EVENTS;
+use crate::report::numbers::{grouped, short};
+use crate::setting::units::Units;
+use crate::slip::outcome::Summary;
+use crate::store::TraceFile;
+use crate::sweep::described::trace::QUANTITIES;
 use serde::Serialize;
-use slipmap::answers::trace::EVENTS;
-use slipmap::report::numbers::{grouped, short};
-use slipmap::setting::units::Units;
-use slipmap::slip::outcome::Summary;
-use slipmap::store::TraceFile;
-use slipmap::sweep::described::trace::QUANTITIES;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;

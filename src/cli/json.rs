@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use crate::report::visible::visible_json;
+use crate::setting::law_kind::LawKind;
+use crate::setting::setting_text::of_point;
+use crate::setting::units::Units;
+use crate::setting::{Parameter, Setting};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
-use slipmap::report::visible::visible_json;
-use slipmap::setting::law_kind::LawKind;
-use slipmap::setting::setting_text::of_point;
-use slipmap::setting::units::Units;
-use slipmap::setting::{Parameter, Setting};
 use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use slipmap::setting::case_file::{TextKind, kind_of_text};
-use slipmap::store::{MapFile, regular, trace_reader};
+use crate::setting::case_file::{TextKind, kind_of_text};
+use crate::store::{MapFile, regular, trace_reader};
 
 /// The first bytes of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";

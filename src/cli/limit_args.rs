@@ -1,8 +1,8 @@
 //! The flags for a point of the limit of a short delay.
 
+use crate::setting::Parameter;
+use crate::setting::parameter::Group;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use slipmap::setting::Parameter;
-use slipmap::setting::parameter::Group;
 
 use super::parameter_values::Values;
 

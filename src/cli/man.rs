@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::store::{Output, StoreError};
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
-use slipmap::store::{Output, StoreError};
 
 use super::Cli;
 use super::failure::Failure;

@@ -2,14 +2,14 @@
 
 use std::io::Write;
 
-use slipmap::explore::margins::{Margin, Margins, StabilityBox};
-use slipmap::explore::point::Point;
-use slipmap::explore::stability::{Stability, Wanted};
-use slipmap::model::stop::Stop;
-use slipmap::report::numbers::{counted, rounded, unit_behind};
-use slipmap::setting::units::Units;
-use slipmap::setting::{Parameter, Setting};
-use slipmap::text::Shown;
+use crate::explore::margins::{Margin, Margins, StabilityBox};
+use crate::explore::point::Point;
+use crate::explore::stability::{Stability, Wanted};
+use crate::model::stop::Stop;
+use crate::report::numbers::{counted, rounded, unit_behind};
+use crate::setting::units::Units;
+use crate::setting::{Parameter, Setting};
+use crate::text::Shown;
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema};

@@ -2,16 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use slipmap::maps::assembly::{Assembled, Missing};
-use slipmap::maps::maker::{self, Merge};
-use slipmap::report::log::{Both, Log};
-use slipmap::report::numbers::{bytes, grouped};
-use slipmap::report::picture::Named;
-use slipmap::report::progress::Progress;
-use slipmap::store::StoreError;
-use slipmap::store::tiles::shards;
-use slipmap::sweep::events::Attended;
-use slipmap::sweep::{Plan, Shard};
+use crate::maps::assembly::{Assembled, Missing};
+use crate::maps::maker::{self, Merge};
+use crate::report::log::{Both, Log};
+use crate::report::numbers::{bytes, grouped};
+use crate::report::picture::Named;
+use crate::report::progress::Progress;
+use crate::store::StoreError;
+use crate::store::tiles::shards;
+use crate::sweep::events::Attended;
+use crate::sweep::{Plan, Shard};
 
 use super::failure::Failure;
 use super::output::{check_name, provenance, tell_assembled, tell_no_boundaries};
@@ -157,7 +157,7 @@ fn failure(error: StoreError, map: &Path, signals: &Signals) -> Failure {
         _ => return error.into(),
     }
     let mut unfinished = Vec::new();
-    if let Ok(Some(survey)) = slipmap::store::tiles::Survey::of(map) {
+    if let Ok(Some(survey)) = crate::store::tiles::Survey::of(map) {
         let short = survey.shards.iter().filter(|s| s.pieces_done < s.pieces);
         unfinished.extend(short.map(|s| s.shard.to_string()));
         for of in survey.shards.iter().map(|s| s.shard.numbers().1).take(1) {

@@ -114,6 +114,7 @@ use std::sync::Arc;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+pub use address_space::Refusing;
 use colours::Colours;
 use failure::Failure;
 use json::AnswerSchema;
@@ -124,7 +125,7 @@ const LAST: usize = 1000;
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
 #[command(
-    version = format!("{} ({})", slipmap::VERSION, slipmap::REVISION)
+    version = format!("{} ({})", crate::VERSION, crate::REVISION)
 )]
 #[command(
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
@@ -230,7 +231,7 @@ fn say_usage(error: &clap::Error) -> ExitCode {
 }
 
 /// Runs the command line of this process.
-pub(crate) fn main() -> ExitCode {
+pub fn main() -> ExitCode {
     address_space::prepare();
     let colours = Colours::asked();
     colours.apply();

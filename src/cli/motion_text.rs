@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use slipmap::answers::Trace;
-use slipmap::report::numbers::{grouped, unit_behind};
-use slipmap::setting::units::Units;
-use slipmap::setting::{CaseSpec, Field};
-use slipmap::slip::motion::MOST_KEPT;
-use slipmap::slip::outcome::{Outcome, Summary};
-use slipmap::text::Shown;
+use crate::answers::Trace;
+use crate::report::numbers::{grouped, unit_behind};
+use crate::setting::units::Units;
+use crate::setting::{CaseSpec, Field};
+use crate::slip::motion::MOST_KEPT;
+use crate::slip::outcome::{Outcome, Summary};
+use crate::text::Shown;
 
 use super::output::tell_dimensionless;
 

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use slipmap::maps::assembly::{Missing, assemble};
-use slipmap::report::numbers::grouped;
-use slipmap::setting::{Field, Parameter};
-use slipmap::store::output::hidden_beside;
-use slipmap::store::tiles::{TileReader, shards};
-use slipmap::store::{MapFile, Output};
-use slipmap::text::nearest::did_you_mean;
+use crate::maps::assembly::{Missing, assemble};
+use crate::report::numbers::grouped;
+use crate::setting::{Field, Parameter};
+use crate::store::output::hidden_beside;
+use crate::store::tiles::{TileReader, shards};
+use crate::store::{MapFile, Output};
+use crate::text::nearest::did_you_mean;
 
 use super::failure::Failure;
 use super::output::provenance;

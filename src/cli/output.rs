@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use slipmap::maps::assembly::Assembled;
-use slipmap::report::numbers::{grouped, representable};
-use slipmap::report::picture;
-use slipmap::setting::units::Units;
-use slipmap::sweep::Plan;
-use slipmap::sweep::described::root::Provenance;
+use crate::maps::assembly::Assembled;
+use crate::report::numbers::{grouped, representable};
+use crate::report::picture;
+use crate::setting::units::Units;
+use crate::sweep::Plan;
+use crate::sweep::described::root::Provenance;
 
 use super::failure::Failure;
 use super::say;

@@ -1,8 +1,8 @@
 //! The values that flags give to parameters.
 
+use crate::setting::Parameter;
+use crate::setting::parameter::Group;
 use clap::{Arg, ArgMatches};
-use slipmap::setting::Parameter;
-use slipmap::setting::parameter::Group;
 
 /// The values that flags give to parameters; each parameter has a flag in its row.
 #[derive(Debug, Clone)]

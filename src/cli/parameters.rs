@@ -3,16 +3,16 @@
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
+use crate::model::ModelError;
+use crate::setting::Parameter;
+use crate::setting::law_kind::{Formula, LawKind, NO_MOTIONS};
+use crate::setting::parameter::Group;
+use crate::setting::simulation::NOT_IN_MOTIONS;
+use crate::setting::units::Units;
+use crate::setting::values::Setting;
+use crate::text::Shown;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use slipmap::model::ModelError;
-use slipmap::setting::Parameter;
-use slipmap::setting::law_kind::{Formula, LawKind, NO_MOTIONS};
-use slipmap::setting::parameter::Group;
-use slipmap::setting::simulation::NOT_IN_MOTIONS;
-use slipmap::setting::units::Units;
-use slipmap::setting::values::Setting;
-use slipmap::text::Shown;
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;

@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use crate::model::stop::Stop;
+use crate::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
+use crate::setting::axis::Axis;
+use crate::store::tiles::RecordEncoder;
+use crate::sweep::cells::best_planes::{best_of_plane, best_plane};
+use crate::sweep::cells::boundaries::{plane, trace_plane};
+use crate::sweep::described::schema::STATUS;
+use crate::sweep::engine::{Computed, Encode, Worker};
+use crate::sweep::plan::pieces::spread;
+use crate::sweep::{Memory, Piece, Plan};
 use serde::Serialize;
-use slipmap::model::stop::Stop;
-use slipmap::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
-use slipmap::setting::axis::Axis;
-use slipmap::store::tiles::RecordEncoder;
-use slipmap::sweep::cells::best_planes::{best_of_plane, best_plane};
-use slipmap::sweep::cells::boundaries::{plane, trace_plane};
-use slipmap::sweep::described::schema::STATUS;
-use slipmap::sweep::engine::{Computed, Encode, Worker};
-use slipmap::sweep::plan::pieces::spread;
-use slipmap::sweep::{Memory, Piece, Plan};
 use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;

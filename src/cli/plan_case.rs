@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::answers::trace::MOST_SAMPLES;
+use crate::report::numbers::{bytes, grouped};
+use crate::setting::CaseSpec;
+use crate::setting::case_file::Sampling;
+use crate::sweep::described::trace::BYTES_OF_A_SAMPLE;
 use serde::Serialize;
-use slipmap::answers::trace::MOST_SAMPLES;
-use slipmap::report::numbers::{bytes, grouped};
-use slipmap::setting::CaseSpec;
-use slipmap::setting::case_file::Sampling;
-use slipmap::sweep::described::trace::BYTES_OF_A_SAMPLE;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;

@@ -3,14 +3,12 @@
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use crate::report::picture::{self, ColourMap, Picture, PictureError, PictureKind, PictureOptions};
+use crate::setting::Field;
+use crate::setting::quantity::Quantity;
+use crate::store::{MapFile, TraceFile, trace_reader};
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use slipmap::report::picture::{
-    self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
-};
-use slipmap::setting::Field;
-use slipmap::setting::quantity::Quantity;
-use slipmap::store::{MapFile, TraceFile, trace_reader};
 
 use super::cell::{At, parse_at};
 use super::failure::Failure;

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use slipmap::explore::along_delay::AlongDelay;
-use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
-use slipmap::explore::stability::Wanted;
-use slipmap::model::stop::Stop;
-use slipmap::report::picture::{self, Picture, PointPicture};
+use crate::explore::along_delay::AlongDelay;
+use crate::explore::point::{BlockPoint, Point, SystemPoint};
+use crate::explore::stability::Wanted;
+use crate::model::stop::Stop;
+use crate::report::picture::{self, Picture, PointPicture};
 
 use super::asked::Asked;
 use super::failure::Failure;

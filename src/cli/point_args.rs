@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use slipmap::setting::Parameter;
-use slipmap::setting::point_file::PointOf;
+use crate::setting::Parameter;
+use crate::setting::point_file::PointOf;
 
 use super::asked::Asked;
 use super::cell::{CellArgs, alone};

@@ -2,14 +2,14 @@
 
 use std::io::Write;
 
-use slipmap::explore::margin_kind::MarginKind;
-use slipmap::explore::point::{BlockPoint, Point, SystemPoint};
-use slipmap::explore::stability::{Spectrum, Stability};
-use slipmap::report::numbers::unit_behind;
-use slipmap::setting::units::Units;
-use slipmap::setting::{Field, Parameter, Setting};
-use slipmap::sweep::relaxation_time;
-use slipmap::text::Shown;
+use crate::explore::margin_kind::MarginKind;
+use crate::explore::point::{BlockPoint, Point, SystemPoint};
+use crate::explore::stability::{Spectrum, Stability};
+use crate::report::numbers::unit_behind;
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter, Setting};
+use crate::sweep::relaxation_time;
+use crate::text::Shown;
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;

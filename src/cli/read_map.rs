@@ -22,7 +22,7 @@ pub(super) struct Args {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     limit();
     let input = std::io::stdin().lock();
-    let read = slipmap::serve::read_map(&args.map, input, std::io::stdout());
+    let read = crate::serve::read_map(&args.map, input, std::io::stdout());
     // Exit without exit hooks: with them the HDF5 library would close what is being read.
     low_level::exit(i32::from(read.is_err()))
 }

@@ -1,13 +1,13 @@
 //! The setting that `slipmap best` recommends.
 
+use crate::answers::best::{BestSettings, Ranges, RobustSetting};
+use crate::explore::point::Point;
+use crate::explore::vc::CriticalVelocity;
+use crate::linear::best::SearchedGain;
+use crate::setting::Parameter;
+use crate::setting::quantity::Quantity;
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::answers::best::{BestSettings, Ranges, RobustSetting};
-use slipmap::explore::point::Point;
-use slipmap::explore::vc::CriticalVelocity;
-use slipmap::linear::best::SearchedGain;
-use slipmap::setting::Parameter;
-use slipmap::setting::quantity::Quantity;
 use utoipa::ToSchema;
 
 use super::asked::Asked;

@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use slipmap::letter::{GENERATOR, LetterError, Reproduction, Verdict, Workshop, reproduce};
-use slipmap::report::progress::Progress;
-use slipmap::store::{Output, StoreError, regular};
-use slipmap::sweep::events::Attended;
-use slipmap::sweep::{Event, Observer};
+use crate::letter::{GENERATOR, LetterError, Reproduction, Verdict, Workshop, reproduce};
+use crate::report::progress::Progress;
+use crate::store::{Output, StoreError, regular};
+use crate::sweep::events::Attended;
+use crate::sweep::{Event, Observer};
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
@@ -219,7 +219,7 @@ fn failure(error: LetterError, args: &Args, signals: &Signals) -> Failure {
             "it is left as it is; --keep names another folder",
         ),
         LetterError::Store(error) => error.into(),
-        LetterError::Run(slipmap::sweep::RunError::Sink(error)) => error.into(),
+        LetterError::Run(crate::sweep::RunError::Sink(error)) => error.into(),
         error => Failure::failed(error.to_string()),
     }
 }

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::maps::maker::{self, Job};
+use crate::report::log::{Both, Log};
+use crate::report::numbers::{bytes, grouped, prefixed, seconds};
+use crate::report::progress::Progress;
+use crate::store::tiles::{Manifest, shards};
+use crate::store::{MapFile, StoreError};
+use crate::sweep::described::schema::root;
+use crate::sweep::events::Attended;
+use crate::sweep::{Memory, Plan, RunError, Shard};
 use bytesize::ByteSize;
-use slipmap::maps::maker::{self, Job};
-use slipmap::report::log::{Both, Log};
-use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::report::progress::Progress;
-use slipmap::store::tiles::{Manifest, shards};
-use slipmap::store::{MapFile, StoreError};
-use slipmap::sweep::described::schema::root;
-use slipmap::sweep::events::Attended;
-use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::address_space;
 use super::failure::Failure;
@@ -298,7 +298,7 @@ fn has_tiles_of(path: &Path, plan: &Plan) -> bool {
 /// How a complete map of the same cells would change with `--fresh`.
 fn what_differs(map: &MapFile, plan: &Plan) -> String {
     let version = map.root_text(root::PROGRAM_VERSION).unwrap_or_default();
-    if version != slipmap::VERSION {
+    if version != crate::VERSION {
         format!(", computed by slipmap {version}; --fresh computes it again")
     } else if map.root_text(root::SWEEP).as_deref() != Some(&plan.spec.text) {
         ", with the same cells; the sweep file has changed otherwise: --fresh takes that over"

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::{StdoutLock, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub(super) use slipmap::report::visible::{shortened, visible, visible_line};
+pub(super) use crate::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
 

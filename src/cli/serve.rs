@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use tempfile::TempPath;
 
-use slipmap::serve::{Place, ReaderCommand, Server, Serving};
+use crate::serve::{Place, ReaderCommand, Server, Serving};
 
 use super::failure::Failure;
 use super::read_map;

@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use slipmap::setting::Setting;
-use slipmap::setting::point_file::{PointOf, PointSpec};
-use slipmap::setting::setting_text::setting_text;
-use slipmap::setting::units::Units;
-use slipmap::store::{Output, StoreError, regular};
+use crate::setting::Setting;
+use crate::setting::point_file::{PointOf, PointSpec};
+use crate::setting::setting_text::setting_text;
+use crate::setting::units::Units;
+use crate::store::{Output, StoreError, regular};
 
 use super::failure::Failure;
 use super::output::{warn_beyond_curve, warn_of_idle_delay};

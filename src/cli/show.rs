@@ -3,12 +3,12 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use slipmap::report::numbers::{rounded, unit_behind};
-use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
-use slipmap::report::preview::preview;
-use slipmap::setting::Parameter;
-use slipmap::setting::quantity::Quantity;
-use slipmap::store::{MapFile, Output, StoreError};
+use crate::report::numbers::{rounded, unit_behind};
+use crate::report::picture::{self, Named, Picture, PictureError, PictureOptions};
+use crate::report::preview::preview;
+use crate::setting::Parameter;
+use crate::setting::quantity::Quantity;
+use crate::store::{MapFile, Output, StoreError};
 
 use super::colours::Colours;
 use super::failure::Failure;

@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::answers::Trace;
+use crate::answers::trace::TraceError;
+use crate::explore::motion::MotionSummary;
+use crate::report::numbers::{grouped, unit_behind};
+use crate::report::picture::{self, Picture, PictureError, PictureOptions};
+use crate::report::table::write_samples;
+use crate::setting::setting_text::setting_text;
+use crate::setting::simulation::DISTURBED;
+use crate::setting::{CaseSpec, Parameter};
+use crate::store::{Output, StoreError, trace_file, trace_reader};
+use crate::sweep::described::root::Provenance;
+use crate::sweep::described::trace::QUANTITIES;
+use crate::text::Shown;
 use serde::Serialize;
-use slipmap::answers::Trace;
-use slipmap::answers::trace::TraceError;
-use slipmap::explore::motion::MotionSummary;
-use slipmap::report::numbers::{grouped, unit_behind};
-use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
-use slipmap::report::table::write_samples;
-use slipmap::setting::setting_text::setting_text;
-use slipmap::setting::simulation::DISTURBED;
-use slipmap::setting::{CaseSpec, Parameter};
-use slipmap::store::{Output, StoreError, trace_file, trace_reader};
-use slipmap::sweep::described::root::Provenance;
-use slipmap::sweep::described::trace::QUANTITIES;
-use slipmap::text::Shown;
 use utoipa::ToSchema;
 
 use super::asks::OfStickSlip;

@@ -5,13 +5,13 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use crate::linear::status::FLAGS;
+use crate::report::log::{self, Entry, LogLine};
+use crate::report::numbers::{grouped, prefixed, seconds};
+use crate::store::tiles::Survey;
+use crate::store::tiles::survey::ShardSurvey;
+use crate::store::{MapFile, StatusCounts, regular};
 use serde::Serialize;
-use slipmap::linear::status::FLAGS;
-use slipmap::report::log::{self, Entry, LogLine};
-use slipmap::report::numbers::{grouped, prefixed, seconds};
-use slipmap::store::tiles::Survey;
-use slipmap::store::tiles::survey::ShardSurvey;
-use slipmap::store::{MapFile, StatusCounts, regular};
 use utoipa::ToSchema;
 
 use super::failure::Failure;

@@ -3,17 +3,17 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use slipmap::model::Table;
-use slipmap::report::numbers::bytes;
-use slipmap::setting::case_file::{TextKind, is_case_file};
-use slipmap::setting::friction_table::table_of_law;
-use slipmap::setting::point_file::{PointOf, PointSpec};
-use slipmap::setting::system::SystemModel;
-use slipmap::setting::table_file::{Inlined, NotInlined};
-use slipmap::setting::{CaseSpec, SweepSpec};
-use slipmap::store::regular::{self, NotRead};
-use slipmap::sweep::Plan;
-use slipmap::text::SpecError;
+use crate::model::Table;
+use crate::report::numbers::bytes;
+use crate::setting::case_file::{TextKind, is_case_file};
+use crate::setting::friction_table::table_of_law;
+use crate::setting::point_file::{PointOf, PointSpec};
+use crate::setting::system::SystemModel;
+use crate::setting::table_file::{Inlined, NotInlined};
+use crate::setting::{CaseSpec, SweepSpec};
+use crate::store::regular::{self, NotRead};
+use crate::sweep::Plan;
+use crate::text::SpecError;
 
 use super::failure::Failure;
 use super::kind::Kind;

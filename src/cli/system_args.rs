@@ -4,11 +4,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use slipmap::setting::quantity::Quantity;
-use slipmap::setting::system::{SystemModel, shipped};
-use slipmap::setting::{Parameter, Setting};
-use slipmap::text::Shown;
-use slipmap::text::nearest::did_you_mean;
+use crate::setting::quantity::Quantity;
+use crate::setting::system::{SystemModel, shipped};
+use crate::setting::{Parameter, Setting};
+use crate::text::Shown;
+use crate::text::nearest::did_you_mean;
 
 use super::asked::Asked;
 use super::failure::Failure;

@@ -6,8 +6,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipmap::report::table::TableError;
-use slipmap::store::{Output, StoreError};
+use crate::report::table::TableError;
+use crate::store::{Output, StoreError};
 
 use super::failure::Failure;
 use super::signals::Signals;

@@ -2,17 +2,17 @@
 
 use std::io::Write;
 
+use crate::critical::switch_on::Phase;
+use crate::explore::vc::{CriticalVelocity, ShortDelay};
+use crate::model::stop::Stop;
+use crate::report::numbers::{bound, rounded, unit_behind};
+use crate::setting::point_file::PointOf;
+use crate::setting::search::{self, PHASES};
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter, Setting};
 use clap::ValueEnum;
 use serde::Serialize;
 use serde_json::Value;
-use slipmap::critical::switch_on::Phase;
-use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
-use slipmap::model::stop::Stop;
-use slipmap::report::numbers::{bound, rounded, unit_behind};
-use slipmap::setting::point_file::PointOf;
-use slipmap::setting::search::{self, PHASES};
-use slipmap::setting::units::Units;
-use slipmap::setting::{Field, Parameter, Setting};
 
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::maps::check::{Effort, Program, Report, check};
+use crate::maps::check_trace::{TraceReport, check_trace};
+use crate::report::numbers::grouped;
+use crate::store::tiles::Survey;
+use crate::store::{MapFile, TraceFile, trace_reader};
+use crate::sweep::cells::second_look::Question;
 use serde::Serialize;
-use slipmap::maps::check::{Effort, Program, Report, check};
-use slipmap::maps::check_trace::{TraceReport, check_trace};
-use slipmap::report::numbers::grouped;
-use slipmap::store::tiles::Survey;
-use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::cells::second_look::Question;
 use utoipa::ToSchema;
 
 use super::failure::Failure;
@@ -54,8 +54,8 @@ impl Args {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let program = Program {
-        version: slipmap::VERSION,
-        revision: slipmap::REVISION,
+        version: crate::VERSION,
+        revision: crate::REVISION,
     };
     if trace_reader::is_trace(&args.map) {
         return verify_trace(args, program);

@@ -1,11 +1,11 @@
 //! The contents of map and trace files.
 
-use slipmap::answers::trace::{EVENTS, MODES};
-use slipmap::linear::best::Kind;
-use slipmap::sweep::described::curve_rows::CurveRows;
-use slipmap::sweep::described::group_names;
-use slipmap::sweep::described::schema::{self, root, summary};
-use slipmap::sweep::described::trace::{QUANTITIES, TIME};
+use crate::answers::trace::{EVENTS, MODES};
+use crate::linear::best::Kind;
+use crate::sweep::described::curve_rows::CurveRows;
+use crate::sweep::described::group_names;
+use crate::sweep::described::schema::{self, root, summary};
+use crate::sweep::described::trace::{QUANTITIES, TIME};
 
 use super::markdown::{code, heading, paragraph, table};
 

@@ -11,13 +11,13 @@ mod markdown;
 
 use std::fmt::Write;
 
+use crate::linear::status::FLAGS;
+use crate::setting::field::Storage;
+use crate::setting::keys::{self, Key};
+use crate::setting::law_kind::{Formula, LawKind};
+use crate::setting::{Field, Parameter};
+use crate::sweep::described::schema;
 use clap::ValueEnum;
-use slipmap::linear::status::FLAGS;
-use slipmap::setting::field::Storage;
-use slipmap::setting::keys::{self, Key};
-use slipmap::setting::law_kind::{Formula, LawKind};
-use slipmap::setting::{Field, Parameter};
-use slipmap::sweep::described::schema;
 
 use super::failure::Failure;
 use super::say;
@@ -189,9 +189,9 @@ fn fields(page: &mut String) {
 }
 
 /// Units with the names of the quantities that they measure.
-fn symbolic() -> slipmap::setting::units::Units {
+fn symbolic() -> crate::setting::units::Units {
     let force_length_time = Some(["force", "length", "time"].map(String::from));
-    slipmap::setting::units::Units { force_length_time }
+    crate::setting::units::Units { force_length_time }
 }
 
 fn meaning_of_flag(name: &str) -> &'static str {

@@ -92,6 +92,18 @@ struct Problem {
 /// Where lobe number `lobe` of pure control ends (0 is the one at the shortest delays), with memory
 /// −1 < R < 1 and latency; none where it is not followed as far, or where other roots are unstable
 /// there.
+///
+/// # Examples
+///
+/// ```
+/// use slipmap::linear::general::ends::{Latency, lobe_end};
+/// use slipmap::linear::lobes::LobeControl;
+///
+/// // The latency with which velocity control reaches farthest.
+/// let end = lobe_end(LobeControl::Velocity, 0, 0.0, Latency::Best).expect("it is followed");
+/// assert!((end.b - -0.757_701_628_5).abs() < 1e-9);
+/// assert!((end.latency - 0.535_990_8).abs() < 1e-6);
+/// ```
 #[must_use]
 pub fn lobe_end(control: LobeControl, lobe: u32, memory: f64, latency: Latency) -> Option<LobeEnd> {
     let plain = control.lobe_end(lobe);
