@@ -61,6 +61,28 @@ pub enum Region {
 }
 
 /// The question of a setting, and what is known before any start is followed.
+///
+/// ```
+/// use slipmap::answers::basin::{Asked, Tally};
+/// use slipmap::setting::basin::Basin;
+/// use slipmap::setting::law_kind::{Formula, LawKind};
+/// use slipmap::setting::simulation::Simulation;
+/// use slipmap::setting::{Parameter, Setting};
+/// use slipmap::slip::outcome::Outcome;
+///
+/// let law = LawKind::Formula(Formula::named("coulomb")?);
+/// let numbers = [("mu0", 0.5), ("alpha_n", -1.0), ("tau", 1.0), ("v0", 3.0)];
+/// let setting = Setting::checked(numbers, Some(law), &[])?;
+/// let basin = Basin { starts: 64, ..Basin::default() };
+/// let asked = Asked::of(&setting, &Simulation::default(), &basin)?.expect("there is a law");
+/// let (mut follower, mut motion, mut tally) = (asked.follower(), None, Tally::default());
+/// for place in asked.places() {
+///     tally.count(place, follower.follow(place, &mut motion));
+/// }
+/// let share = tally.share(&[Outcome::Sliding]);
+/// assert!((0.0..=1.0).contains(&share.share) && share.error > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asked {
     /// The motion, apart from its start.

@@ -195,6 +195,19 @@ fn acting(setting: &Setting, searched: &Quantity) -> Setting {
 /// `searched` and the delay are those of `setting`. Once `stop` is set, the answer comes soon but
 /// is meaningless.
 ///
+/// ```
+/// use slipmap::answers::best::{best_settings, default_ranges};
+/// use slipmap::setting::{Parameter, Setting};
+///
+/// let numbers = [("mu_prime", -0.3), ("tau", 1.0), ("alpha_v", -0.3)];
+/// let setting = Setting::checked(numbers, None, &[])?;
+/// let searched = Parameter::AlphaV.into();
+/// let ranges = default_ranges(&setting, &searched)?;
+/// let found = best_settings(&setting, &searched, &ranges, &Default::default())?;
+/// assert!(found.overall.abscissa < 0.0, "some setting is stable");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range, or nothing is known of the model in
 /// the middle of the ranges.

@@ -11,6 +11,20 @@ use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 
 /// A setting and the decay required of it.
+///
+/// ```
+/// use slipmap::answers::margins::Around;
+/// use slipmap::setting::Setting;
+///
+/// let numbers = [("mu_prime", -0.3), ("alpha_v", -0.33), ("tau", 4.15)];
+/// let setting = Setting::checked(numbers, None, &[])?;
+/// let around = Around::of(&setting, 0.0)?.expect("it is the block");
+/// assert!(around.stable());
+/// // The delays between which it stays stable.
+/// let delays = around.delay();
+/// assert!(delays.lower < 4.15 && 4.15 < delays.upper);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Around {
     of: Case,

@@ -84,6 +84,25 @@ impl TraceEvent {
 }
 
 /// A motion with its outcome.
+///
+/// ```
+/// use slipmap::answers::Trace;
+/// use slipmap::setting::CaseSpec;
+///
+/// let case: CaseSpec = "
+/// [trace]
+/// until = 60.0
+/// [friction]
+/// law = \"weakening\"
+/// mu0 = 0.5
+/// v_s = 0.5
+/// [fixed]
+/// v0 = 0.35
+/// ".parse()?;
+/// let trace = Trace::of(&case)?;
+/// assert!(!trace.sticks().is_empty(), "without control the block sticks and slips");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// Samples at strictly increasing times, from 0 to the end of the trace. Every event has one.

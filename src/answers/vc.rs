@@ -34,6 +34,20 @@ pub struct Asked {
 
 /// The problem of a setting; its v0 is ignored.
 ///
+/// ```
+/// use slipmap::answers::vc::asked;
+/// use slipmap::setting::law_kind::{Formula, LawKind};
+/// use slipmap::setting::search::Protocol;
+/// use slipmap::setting::{Parameter, Setting};
+///
+/// let law = LawKind::Formula(Formula::named("weakening")?);
+/// let numbers = [("mu0", 0.5), ("v_s", 0.5), ("alpha_v", -0.33), ("tau", 4.15)];
+/// let setting = Setting::checked(numbers, Some(law), &[Parameter::V0])?;
+/// let found = asked(&setting)?.find(Protocol::Follow);
+/// assert!(found.critical.vc > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When the setting has no friction law, or a value is outside the model's range: a gain needs a
 /// delay τ > 0.

@@ -231,6 +231,7 @@ fn say_usage(error: &clap::Error) -> ExitCode {
 }
 
 /// Runs the command line of this process.
+#[must_use]
 pub fn main() -> ExitCode {
     address_space::prepare();
     let colours = Colours::asked();

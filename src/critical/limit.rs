@@ -16,6 +16,15 @@ use crate::model::ModelError;
 use crate::model::elementary::{cos, exp, expm1, sin};
 
 /// The limit at one γ and one μ_K/μ_S.
+///
+/// ```
+/// use slipmap::critical::limit::CoulombLimit;
+///
+/// // Fig. 4 of the letter: from γ = 1 on there is no stick-slip.
+/// assert_eq!(CoulombLimit::at(1.0, 0.5)?.vc_over_vtilde, 0.0);
+/// assert!(CoulombLimit::at(0.1, 0.5)?.vc_over_vtilde > 0.0);
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoulombLimit {
     /// v_c/ṽ; 0 for γ ≥ 1.

@@ -211,6 +211,17 @@ impl Method {
 
 /// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN stands for a
 /// number that does not exist.
+///
+/// ```
+/// use slipmap::critical::{Problem, critical_velocity};
+/// use slipmap::model::{Feedback, FrictionLaw};
+///
+/// // The letter's Fig. 3(a).
+/// let law = FrictionLaw::weakening(0.5, 0.5, 1.0)?;
+/// let found = critical_velocity(&Problem::new(law, Feedback::new(-0.33, 0.0, 4.15)));
+/// assert!(found.decided && found.vc_lower <= found.vc && found.vc <= found.vc_upper);
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.

@@ -217,6 +217,16 @@ impl Asked {
 
 /// The bytes of the answer to `request` for `text`.
 ///
+/// ```
+/// use slipmap::explore::{Limits, Request, answer};
+///
+/// let text = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
+/// let bytes = answer(Request::Point, text, &Limits::default(), &Default::default()).unwrap();
+/// let point: serde_json::Value = serde_json::from_slice(&bytes)?;
+/// assert_eq!(point["n_unstable"], 0);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`Asked::read`] and [`Asked::answer`].
 pub fn answer(

@@ -196,6 +196,18 @@ impl Crossing {
 }
 
 /// All crossings of one line: one setting of (b, a_v, a_n), every delay.
+///
+/// ```
+/// use slipmap::linear::Crossings;
+/// use slipmap::model::Groups;
+///
+/// // The letter's Fig. 2(a): velocity control where b = −0.3.
+/// let line = Crossings::of(Groups::new(-0.3, -0.33, 0.0));
+/// assert_eq!(line.n_unstable(4.15), 0);
+/// // Between two crossings of the same pair of roots lies one of its periods 2π/ω.
+/// let crossing = line.upper.expect("roots cross the axis");
+/// assert_eq!(crossing.delay(1) - crossing.delay(0), crossing.period());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossings {
     /// Number of unstable roots at τ = 0⁺.

@@ -23,6 +23,14 @@ use crate::model::Groups;
 use crate::model::elementary::arg;
 
 /// The kinds of pure control whose lobes end at a finite slope of the friction law.
+///
+/// ```
+/// use slipmap::linear::lobes::LobeControl;
+///
+/// // Velocity control cannot stabilise sliding below this slope; the letter says −0.68.
+/// let end = LobeControl::Velocity.lobe_end(0);
+/// assert!((end.b - -0.725_635_939_603).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LobeControl {
     /// Pure velocity control, a_n = 0.

@@ -38,6 +38,15 @@ const FOLLOWED: usize = 4;
 const LEFT_OF_FOLLOWED: f64 = 1e-6;
 
 /// Finds roots, keeping its memory from one point to the next.
+///
+/// ```
+/// use slipmap::linear::spectrum::RootFinder;
+/// use slipmap::model::Groups;
+///
+/// // Without control the roots are those of λ² + bλ + 1.
+/// let abscissa = RootFinder::default().abscissa(Groups::new(-0.3, 0.0, 0.0), 1.0).unwrap();
+/// assert!((abscissa - 0.15).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct RootFinder {
     starts: Vec<Complex64>,

@@ -49,6 +49,17 @@ impl Lags {
 
 /// Delayed feedback of the elongation: α_v in 1/time, α_N in force/length, and times; or all of it
 /// in the units of an oscillator, see [`Feedback::dimensionless`].
+///
+/// ```
+/// use slipmap::model::{Channel, Feedback, Oscillator};
+///
+/// // Velocity control with a delay of 2 s, of which half of what was fed back is remembered.
+/// let feedback = Feedback::new(-0.6, 0.0, 2.0).through(Channel { memory: 0.5, latency: 0.0 });
+/// let block = Oscillator::new(2.0, 8.0, 10.0)?;
+/// let dimensionless = feedback.dimensionless(&block);
+/// assert_eq!((dimensionless.gains.alpha_v, dimensionless.tau), (-0.3, 4.0));
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Feedback {
     /// α_v and α_N.

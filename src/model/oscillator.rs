@@ -3,6 +3,17 @@
 use super::{FrictionLaw, Groups, ModelError};
 
 /// A block of mass M on a spring κ, pressed down by the unperturbed load N0.
+///
+/// ```
+/// use slipmap::model::{Control, Oscillator, SlidingPoint};
+///
+/// let block = Oscillator::new(2.0, 8.0, 10.0)?; // kg, N/m, N
+/// assert_eq!(block.time_unit(), 0.5);
+/// let sliding = SlidingPoint { mu_k: 0.4, mu_prime: -0.1 }; // μ′ in s/m
+/// let groups = block.groups(sliding, Control { alpha_v: -0.6, alpha_n: 0.0 });
+/// assert_eq!((groups.b, groups.a_v), (-0.25, -0.3));
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
     mass: f64,

@@ -15,6 +15,24 @@ use super::elementary::ln;
 use super::{ModelError, Oscillator, SlidingPoint};
 
 /// The law, with its parameters as in (1).
+///
+/// ```
+/// use slipmap::model::{Oscillator, RateAndState};
+///
+/// let law = RateAndState {
+///     mu0: 0.6,
+///     v_star: 1.0,
+///     direct_effect: 0.01,
+///     evolution_effect: 0.015,
+///     slip_distance: 0.1,
+///     load_memory: 0.0,
+/// };
+/// // Without control sliding is stable on springs stiffer than the critical one.
+/// let block = Oscillator::new(1.0, 1.0, 1.0)?;
+/// let groups = law.groups(&block, 1e-3);
+/// assert!(groups.stiffness_ratio() > 1.0);
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateAndState {
     /// μ₀, the coefficient of steady sliding at v*.

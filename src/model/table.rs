@@ -35,6 +35,15 @@ const SIZES: RangeInclusive<f64> = 1e-12..=1e12;
 /// Source: F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
 ///
 /// Clones share their points.
+///
+/// ```
+/// use slipmap::model::Table;
+///
+/// let measured = Table::new(vec![0.0, 0.1, 0.5, 1.0], vec![0.50, 0.45, 0.38, 0.36])?;
+/// assert_eq!(measured.value(0.1), 0.45);
+/// assert!(measured.slope(0.3) < 0.0, "friction weakens");
+/// # Ok::<(), slipmap::model::table::TableError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table(Arc<Points>);
 

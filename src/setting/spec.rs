@@ -74,6 +74,23 @@ use super::values::Setting;
 use crate::linear::MarginalTolerance;
 
 /// A sweep as described by its file: every value in range, every name known.
+///
+/// ```
+/// use slipmap::setting::SweepSpec;
+///
+/// let sweep: SweepSpec = "
+/// fields = [\"n_unstable\"]
+/// [axes]
+/// tau = { from = 1.0, to = 5.0, points = 9 }
+/// [fixed]
+/// mu_prime = -0.3
+/// ".parse()?;
+/// assert_eq!(sweep.axes[0].values[1], 1.5);
+/// // An error points at its place.
+/// let error = "fields = [\"n_unstabel\"]".parse::<SweepSpec>().unwrap_err();
+/// assert_eq!(error.span, Some(10..22));
+/// # Ok::<(), slipmap::text::SpecError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepSpec {
     /// Title for pictures and the map; may be empty.

@@ -97,6 +97,19 @@ impl GivenError {
 }
 
 /// One value for every parameter: a point of parameter space.
+///
+/// ```
+/// use slipmap::model::stop::Stop;
+/// use slipmap::setting::{Parameter, Setting};
+///
+/// let numbers = [("mu_prime", -0.3), ("alpha_v", -0.33), ("tau", 4.15)];
+/// let setting = Setting::checked(numbers, None, &[])?;
+/// assert_eq!(setting.get(Parameter::NormalLoad), 1.0);
+/// let (linear, time_unit) = setting.linear()?;
+/// let roots = linear.roots(&Stop::default());
+/// assert_eq!(roots.count(4.15, time_unit).unwrap().n_unstable, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],

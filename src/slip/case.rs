@@ -8,6 +8,29 @@ use super::watch::{REPEATED, follow};
 use crate::model::{Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint};
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
+///
+/// ```
+/// use slipmap::model::{Feedback, FrictionLaw, Oscillator};
+/// use slipmap::slip::case::{Case, Start};
+/// use slipmap::slip::motion::Accuracy;
+/// use slipmap::slip::outcome::Outcome;
+///
+/// // The letter's Fig. 3(a): control is switched on at t = 40 and ends stick-slip.
+/// let case = Case {
+///     oscillator: Oscillator::default(),
+///     law: FrictionLaw::weakening(0.5, 0.5, 1.0)?,
+///     feedback: Feedback::new(-0.33, 0.0, 4.15),
+///     v0: 0.35,
+///     switch_on: 40.0,
+///     start: Start::State { x_dot0: 0.0, a0: 0.0 },
+///     horizon: 4000.0,
+///     steps: 1_000_000,
+///     accuracy: Accuracy::default(),
+/// };
+/// let summary = case.run(&mut ())?;
+/// assert_eq!(summary.outcome, Outcome::Sliding);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// Mass, stiffness, load.

@@ -51,6 +51,32 @@ pub struct Plane {
 }
 
 /// An open map.
+///
+/// ```
+/// use std::sync::Arc;
+/// use slipmap::maps::maker::{Job, make};
+/// use slipmap::setting::SweepSpec;
+/// use slipmap::store::MapFile;
+/// use slipmap::sweep::Plan;
+/// use slipmap::sweep::described::root::Provenance;
+/// use slipmap::sweep::events::Attended;
+///
+/// let sweep: SweepSpec = "
+/// fields = [\"n_unstable\"]
+/// [axes]
+/// alpha_v = [-0.33, 0.0]
+/// tau = { from = 1.0, to = 5.0, points = 9 }
+/// [fixed]
+/// mu_prime = -0.3
+/// ".parse()?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("map.h5");
+/// let plan = Arc::new(Plan::new(sweep)?);
+/// make(&plan, &Job::new(&path, 1, &Provenance::default()), Attended::silently(&Arc::default()))?;
+/// let map = MapFile::open(&path)?;
+/// assert_eq!(map.cells(), 18);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct MapFile {
     path: PathBuf,

@@ -65,7 +65,7 @@ pub mod zeros;
 pub use latency::Form;
 pub use line::DelayLine;
 pub use plane::{Setting, SystemPlane};
-pub use polynomial::Polynomial;
+pub use polynomial::{DegreeTooLarge, Polynomial};
 pub use precise::source::Source;
 pub use reason::Reason;
 pub use right_of::RootCounter;

@@ -14,6 +14,20 @@ use crate::model::Channel;
 use crate::model::elementary::{exp, ln, pow};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
+///
+/// ```
+/// use slipmap::linear::general::{DelayLine, System};
+///
+/// // s² + 0.1 s + 1 + 0.5 e^(−sτ): an oscillator with delayed restoring force.
+/// let system = System::of_coefficients(&[1.0, 0.1, 1.0], &[0.5])?;
+/// let line = DelayLine::of(&system);
+/// let first = line.stable_intervals().next().expect("it is stable without delay");
+/// assert_eq!(first.from, 0.0);
+/// // Where it ends, s = iω is a root: |P(iω)| = 0.5.
+/// let omega = line.crossings[0].omega;
+/// assert!((f64::hypot(1.0 - omega * omega, 0.1 * omega) - 0.5).abs() < 1e-12);
+/// # Ok::<(), slipmap::linear::general::DegreeTooLarge>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct System {
     /// P.

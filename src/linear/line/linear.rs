@@ -9,6 +9,17 @@ use crate::model::stop::Stop;
 use crate::model::{Channel, Groups, Lags};
 
 /// A linear model, dimensionless.
+///
+/// ```
+/// use slipmap::linear::line::Linear;
+/// use slipmap::model::stop::Stop;
+/// use slipmap::model::{Channel, Groups};
+///
+/// // Feedback that is late by 0.2.
+/// let late = Channel { memory: 0.0, latency: 0.2 };
+/// let linear = Linear::of_feedback(Groups::new(-0.3, -0.33, 0.0), late);
+/// assert_eq!(linear.roots(&Stop::default()).count(4.0, 1.0).unwrap().n_unstable, 0);
+/// ```
 #[derive(Debug, Clone)]
 pub enum Linear {
     /// The letter's own: without memory, latency and lags.

@@ -172,6 +172,15 @@ laws! {
 ///
 /// Every law is a function of the sliding speed |ẋ| > 0; the force points against the motion.
 /// A law with μ_K(0⁺) > μ_S is refused: release from stick would accelerate backwards.
+///
+/// ```
+/// use slipmap::model::FrictionLaw;
+///
+/// // μ_K = 0.5/(1 + |ẋ|/0.5) and μ_S = 1.
+/// let law = FrictionLaw::weakening(0.5, 0.5, 1.0)?;
+/// assert_eq!((law.mu_k(0.5), law.mu_prime(0.5)), (0.25, -0.25));
+/// # Ok::<(), slipmap::model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionLaw {
     kind: Kind,

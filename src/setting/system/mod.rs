@@ -45,6 +45,26 @@ use crate::linear::general::System;
 use crate::model::Channel;
 
 /// A system whose parameters have no values yet.
+///
+/// ```
+/// use slipmap::model::stop::Stop;
+/// use slipmap::setting::Setting;
+/// use slipmap::setting::system::SystemModel;
+/// use std::sync::Arc;
+///
+/// let model: SystemModel = "
+/// P = \"s^2 + 2*zeta*s + 1\"
+/// Q = \"k\"
+/// [parameters]
+/// zeta = { default = 0.05, long_name = \"damping ratio\" }
+/// k = { default = 0.2, long_name = \"gain\" }
+/// ".parse()?;
+/// let setting = Setting::of_system(Arc::new(model));
+/// let (linear, time_unit) = setting.linear()?;
+/// let roots = linear.roots(&Stop::default());
+/// assert_eq!(roots.count(0.1, time_unit).unwrap().n_unstable, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SystemModel {
     /// Title for pictures and maps; may be empty.

@@ -42,6 +42,23 @@ pub const MOST_TILES: usize = 1 << 21;
 const MOST_PLANES: u64 = 1_000_000;
 
 /// A sweep ready to run.
+///
+/// ```
+/// use slipmap::setting::SweepSpec;
+/// use slipmap::sweep::Plan;
+///
+/// let sweep: SweepSpec = "
+/// fields = [\"n_unstable\"]
+/// [axes]
+/// alpha_v = { from = -1.0, to = 1.0, points = 21 }
+/// tau = { from = 0.0, to = 10.0, points = 101 }
+/// [fixed]
+/// mu_prime = -0.3
+/// ".parse()?;
+/// let plan = Plan::new(sweep)?;
+/// assert_eq!(plan.cells(), 21 * 101);
+/// # Ok::<(), slipmap::text::SpecError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// The sweep file's content.
