@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::setting::law_kind::{Formula, LawKind};
+use crate::setting::parameter::{Folded, Page};
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 
@@ -46,6 +47,25 @@ pub struct KnownParameter {
     /// The flag that gives it on the command line, if there is one.
     #[cfg_attr(feature = "serve", schema(required))]
     pub flag: Option<String>,
+    /// How the page offers it; none where it does not.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub page: Option<KnownPage>,
+}
+
+/// How the page offers a parameter.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct KnownPage {
+    /// The value at first; none where it is the default.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub first: Option<f64>,
+    /// The ends of its slider.
+    pub slider: [f64; 2],
+    /// The ends of its axis at first.
+    pub axis: [f64; 2],
+    /// The box in which its slider is folded away: `feedback` or `model`; none where it is in sight.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub folded: Option<&'static str>,
 }
 
 /// A friction law.
@@ -124,6 +144,24 @@ impl KnownParameter {
             allowed: parameter.allowed(),
             group: parameter.group().name(),
             flag: parameter.long_flag().map(|flag| format!("--{flag}")),
+            page: parameter.page().map(KnownPage::of),
+        }
+    }
+}
+
+impl KnownPage {
+    fn of(page: Page) -> Self {
+        let Page {
+            first,
+            slider,
+            axis,
+            folded,
+        } = page;
+        Self {
+            first,
+            slider,
+            axis,
+            folded: folded.map(Folded::name),
         }
     }
 }

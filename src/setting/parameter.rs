@@ -63,6 +63,47 @@ pub struct Flag {
     pub help: &'static str,
 }
 
+/// The boxes of the page in which sliders are folded away, as they are most often at their defaults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Folded {
+    /// The feedback beyond the letter's.
+    Feedback,
+    /// The block, its spring and its load.
+    Model,
+}
+
+impl Folded {
+    /// The name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Feedback => "feedback",
+            Self::Model => "model",
+        }
+    }
+}
+
+/// How the page in the browser offers a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Page {
+    /// The value at first; that by default if there is none.
+    pub first: Option<f64>,
+    /// The ends of its slider.
+    pub slider: [f64; 2],
+    /// The ends of its axis at first.
+    pub axis: [f64; 2],
+    /// The box of its slider; none where it is always in sight.
+    pub folded: Option<Folded>,
+}
+
+/// What most parameters on the page share.
+const PAGE: Page = Page {
+    first: None,
+    slider: [0.0, 1.0],
+    axis: [0.0, 1.0],
+    folded: None,
+};
+
 /// The facts about a parameter.
 struct Row {
     /// The name, the same word everywhere; flags write `-` for `_`.
@@ -78,6 +119,8 @@ struct Row {
     default: Option<f64>,
     group: Group,
     flag: Option<Flag>,
+    /// None where the page does not offer it.
+    page: Option<Page>,
 }
 
 /// The facts that most rows share.
@@ -90,6 +133,7 @@ const ROW: Row = Row {
     default: None,
     group: Group::Model,
     flag: None,
+    page: None,
 };
 
 const SLOPE: [i32; 3] = [0, -1, 1];
@@ -123,6 +167,12 @@ catalogue! {
                 value: "B",
                 help: "μ_K′(v0), slope of the friction coefficient at the sliding velocity",
             }),
+            page: Some(Page {
+first: Some(-0.3),
+slider: [-0.95, 0.5],
+axis: [-0.95, 0.2],
+..PAGE
+}),
             ..ROW
         };
         /// α_v, the gain of velocity control.
@@ -137,6 +187,12 @@ catalogue! {
                 value: "A",
                 help: "α_v, gain of velocity control [default: 0]",
             }),
+            page: Some(Page {
+first: Some(-0.33),
+slider: [-3.0, 3.0],
+axis: [-1.6, 0.4],
+..PAGE
+}),
             ..ROW
         };
         /// α_N, the gain of load control.
@@ -151,6 +207,12 @@ catalogue! {
                 value: "A",
                 help: "α_N, gain of load control [default: 0]",
             }),
+            page: Some(Page {
+first: Some(-2.0),
+slider: [-10.0, 10.0],
+axis: [-3.0, 1.0],
+..PAGE
+}),
             ..ROW
         };
         /// τ, the delay.
@@ -164,6 +226,12 @@ catalogue! {
                 value: "T",
                 help: "τ, delay of the feedback",
             }),
+            page: Some(Page {
+first: Some(4.15),
+slider: [0.0, 25.0],
+axis: [0.0, 12.0],
+..PAGE
+}),
             ..ROW
         };
         /// v0, the unperturbed pulling velocity.
@@ -177,6 +245,12 @@ catalogue! {
                 value: "V0",
                 help: "v0, pulling velocity (with --friction)",
             }),
+            page: Some(Page {
+first: Some(0.35),
+slider: [0.01, 3.0],
+axis: [0.02, 2.0],
+..PAGE
+}),
             ..ROW
         };
         /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
@@ -190,6 +264,12 @@ catalogue! {
                 value: "M",
                 help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]",
             }),
+            page: Some(Page {
+slider: [0.05, 2.0],
+axis: [0.05, 2.0],
+folded: Some(Folded::Model),
+..PAGE
+}),
             ..ROW
         };
         /// M, the mass of the block.
@@ -203,6 +283,12 @@ catalogue! {
                 value: "MASS",
                 help: "M, mass [default: 1]",
             }),
+            page: Some(Page {
+slider: [0.1, 10.0],
+axis: [0.2, 5.0],
+folded: Some(Folded::Model),
+..PAGE
+}),
             ..ROW
         };
         /// κ, the stiffness of the spring.
@@ -216,6 +302,12 @@ catalogue! {
                 value: "STIFFNESS",
                 help: "κ, stiffness [default: 1]",
             }),
+            page: Some(Page {
+slider: [0.1, 10.0],
+axis: [0.2, 5.0],
+folded: Some(Folded::Model),
+..PAGE
+}),
             ..ROW
         };
         /// N0, the unperturbed normal load.
@@ -229,6 +321,12 @@ catalogue! {
                 value: "NORMAL_LOAD",
                 help: "N0, normal load [default: 1]",
             }),
+            page: Some(Page {
+slider: [0.1, 10.0],
+axis: [0.2, 5.0],
+folded: Some(Folded::Model),
+..PAGE
+}),
             ..ROW
         };
         /// R, the memory of the feedback.
@@ -242,6 +340,12 @@ catalogue! {
                 value: "R",
                 help: "R, share of the feedback fed back again one delay later [default: 0]",
             }),
+            page: Some(Page {
+slider: [-0.95, 0.95],
+axis: [-0.9, 0.9],
+folded: Some(Folded::Feedback),
+..PAGE
+}),
             ..ROW
         };
         /// δ, the latency of the feedback.
@@ -253,6 +357,12 @@ catalogue! {
                 value: "T",
                 help: "δ, latency: time until the feedback acts [default: 0]",
             }),
+            page: Some(Page {
+slider: [0.0, 5.0],
+axis: [0.0, 2.0],
+folded: Some(Folded::Feedback),
+..PAGE
+}),
             ..LAG
         };
         /// T_a, the lag of the load behind its command.
@@ -264,6 +374,12 @@ catalogue! {
                 value: "T",
                 help: "T_a, time constant with which the load follows its command [default: 0]",
             }),
+            page: Some(Page {
+slider: [0.0, 2.0],
+axis: [0.0, 1.0],
+folded: Some(Folded::Feedback),
+..PAGE
+}),
             ..LAG
         };
         /// T_v, the lag of the pulling velocity behind its command.
@@ -275,6 +391,12 @@ catalogue! {
                 value: "T",
                 help: "T_v, time constant with which the velocity follows its command [default: 0]",
             }),
+            page: Some(Page {
+slider: [0.0, 2.0],
+axis: [0.0, 1.0],
+folded: Some(Folded::Feedback),
+..PAGE
+}),
             ..LAG
         };
         /// T_s, the lag of the sensor behind the elongation.
@@ -286,6 +408,12 @@ catalogue! {
                 value: "T",
                 help: "T_s, time constant with which the sensor follows elongation [default: 0]",
             }),
+            page: Some(Page {
+slider: [0.0, 2.0],
+axis: [0.0, 1.0],
+folded: Some(Folded::Feedback),
+..PAGE
+}),
             ..LAG
         };
         /// μ0 of a friction law.
@@ -298,6 +426,12 @@ catalogue! {
                 value: "MU0",
                 help: "μ0 of the friction law",
             }),
+            page: Some(Page {
+first: Some(0.5),
+slider: [0.05, 1.0],
+axis: [0.05, 1.0],
+..PAGE
+}),
             ..ROW
         };
         /// v_s of a friction law.
@@ -311,6 +445,12 @@ catalogue! {
                 value: "V_S",
                 help: "v_s of the friction law",
             }),
+            page: Some(Page {
+first: Some(0.5),
+slider: [0.02, 4.0],
+axis: [0.05, 2.0],
+..PAGE
+}),
             ..ROW
         };
         /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
@@ -403,6 +543,11 @@ catalogue! {
                 value: "MU_S",
                 help: "μ_S, static friction coefficient [default: 1]",
             }),
+            page: Some(Page {
+slider: [0.1, 2.0],
+axis: [0.2, 2.0],
+..PAGE
+}),
             ..ROW
         };
         /// ẋ at t = 0.
@@ -516,6 +661,12 @@ impl Parameter {
     #[must_use]
     pub const fn flag(self) -> Option<Flag> {
         self.row().flag
+    }
+
+    /// How the page offers it; none where it does not.
+    #[must_use]
+    pub const fn page(self) -> Option<Page> {
+        self.row().page
     }
 
     /// The name of that flag, without its dashes.

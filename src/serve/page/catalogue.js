@@ -1,55 +1,5 @@
 // What can be set: as slipmap tells it, and what the page offers of it.
 
-/** Where the page begins with other values than slipmap, or slipmap with none. */
-const VALUES = {
-  mu_prime: -0.3,
-  v0: 0.35,
-  mu0: 0.5,
-  v_s: 0.5,
-  alpha_v: -0.33,
-  alpha_n: -2,
-  tau: 4.15,
-};
-/** Ranges of sliders. */
-export const RANGES = {
-  mu_prime: [-0.95, 0.5],
-  mu_k: [0.05, 2],
-  v0: [0.01, 3],
-  mu0: [0.05, 1],
-  v_s: [0.02, 4],
-  mu_s: [0.1, 2],
-  alpha_v: [-3, 3],
-  alpha_n: [-10, 10],
-  tau: [0, 25],
-  memory: [-0.95, 0.95],
-  latency: [0, 5],
-  load_lag: [0, 2],
-  velocity_lag: [0, 2],
-  sensor_lag: [0, 2],
-  mass: [0.1, 10],
-  stiffness: [0.1, 10],
-  normal_load: [0.1, 10],
-};
-/** Axes of a chart as they begin. */
-const AXES = {
-  mu_prime: [-0.95, 0.2],
-  mu_k: [0.05, 2],
-  v0: [0.02, 2],
-  mu0: [0.05, 1],
-  v_s: [0.05, 2],
-  mu_s: [0.2, 2],
-  alpha_v: [-1.6, 0.4],
-  alpha_n: [-3, 1],
-  tau: [0, 12],
-  memory: [-0.9, 0.9],
-  latency: [0, 2],
-  load_lag: [0, 1],
-  velocity_lag: [0, 1],
-  sensor_lag: [0, 1],
-  mass: [0.2, 5],
-  stiffness: [0.2, 5],
-  normal_load: [0.2, 5],
-};
 /** Controls, and their gains. */
 export const GAINS = { velocity: ["alpha_v"], load: ["alpha_n"], mixed: ["alpha_v", "alpha_n"] };
 /** Fields of which a chart is made while one looks on. */
@@ -89,19 +39,29 @@ export class Catalogue {
     return this.byName.get(name);
   }
 
+  /** The parameters of the block and its feedback that are folded away in a box of sliders. */
+  folded(box) {
+    const these = ({ group, page }) => group === "model" && page?.folded === box;
+    return this.parameters.filter(these).map(({ name }) => name);
+  }
+
   law(name) {
     return this.laws.find((law) => law.name === name);
   }
 
   /** The value of a parameter in a view. */
   value(state, name) {
-    return state.values[name] ?? VALUES[name] ?? this.about(name).default;
+    const { page, default: usual } = this.about(name);
+    return state.values[name] ?? page.first ?? usual;
   }
 
   /** How far an axis is moved and zoomed: farther there is nothing to be found, and it takes long. */
   reach({ name, from, to }) {
-    const [low, high] = this.about(name).range;
-    const far = Math.max(...[...RANGES[name].map((end) => FAR * end), from, to].map(Math.abs));
+    const {
+      range: [low, high],
+      page: { slider },
+    } = this.about(name);
+    const far = Math.max(...[...slider.map((end) => FAR * end), from, to].map(Math.abs));
     return [Math.max(low, -far), Math.min(high, far)];
   }
 
@@ -126,7 +86,7 @@ export class Catalogue {
    * @param {number} highest the largest kinetic coefficient of a table
    */
   axis(name, state, other, highest = 0) {
-    let [from, to] = AXES[name];
+    let [from, to] = this.about(name).page.axis;
     const ends = (of) => (other.name === of ? other : { from: this.value(state, of), to: NaN });
     if (name === "mu_s") {
       const { from: mu0, to: most } = ends("mu0");

@@ -1,10 +1,10 @@
 // The form of the live chart: control, axes, parameters, friction law, units.
 
-import { RANGES, SHOWN, UNITS, withoutZero } from "./catalogue.js";
+import { SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
-import { FEEDBACK, FOLDED, MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
+import { highestOf, parametersOf, pointTexts } from "./sweep.js";
 
 const STEPS = 1000;
 
@@ -90,14 +90,11 @@ export class Controls {
     const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
-    const first = free.filter((name) => !FOLDED.includes(name));
+    const first = free.filter((name) => !this.catalogue.about(name).page.folded);
     element("sliders").replaceChildren(...sliders(first));
-    for (const [id, list] of [
-      ["feedback-sliders", FEEDBACK],
-      ["model-sliders", [...MODEL, "mu_k"]],
-    ]) {
-      const these = free.filter((name) => list.includes(name));
-      element(id).replaceChildren(...sliders(these));
+    for (const box of ["feedback", "model"]) {
+      const these = free.filter((name) => this.catalogue.about(name).page.folded === box);
+      element(`${box}-sliders`).replaceChildren(...sliders(these));
     }
     const legend = element("axes").querySelector("legend");
     const axes = [
@@ -119,7 +116,7 @@ export class Controls {
     const { state } = this;
     const text = this.#text(name);
     const at = this.catalogue.value(state, name);
-    const [low, high] = RANGES[name];
+    const [low, high] = this.catalogue.about(name).page.slider;
     const label = make("label", { htmlFor: `p-${name}` }, text);
     const range = make("input", {
       type: "range",

@@ -2,26 +2,17 @@
 
 import { GAINS } from "./catalogue.js";
 
-/** Parameters of the block, its spring and its load. */
-export const MODEL = ["mass", "stiffness", "normal_load"];
-
-/** Parameters of the feedback beyond the letter's. */
-export const FEEDBACK = ["memory", "latency", "load_lag", "velocity_lag", "sensor_lag"];
-
-/** Parameters that are most often at their defaults: they are folded away, and then left out. */
-export const FOLDED = [...FEEDBACK, ...MODEL, "mu_k"];
-
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
   // Of three that say the same, the page sets two.
   const described = (catalogue.law(state.law)?.parameters ?? []).filter(
-    (name) => name !== "mu_prime_rest",
+    (name) => catalogue.about(name).page,
   );
   const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
-  return [...sliding, ...GAINS[state.control], "tau", ...FEEDBACK, ...MODEL];
+  const folded = ["feedback", "model"].flatMap((box) => catalogue.folded(box));
+  return [...sliding, ...GAINS[state.control], "tau", ...folded];
 }
 
-const ofLaw = (name) => ["mu0", "v_s", "mu_s"].includes(name);
 const line = (name, value) => `${name} = ${value}\n`;
 
 /** The points of a friction law from two columns, v and μ_K, and the lines on which they stand. */
@@ -87,7 +78,7 @@ function tablesOf(state, catalogue, names) {
       text += `speeds = [${speeds.join(", ")}]\nmu_k = [${mu_k.join(", ")}]\n`;
     }
     text += names
-      .filter(ofLaw)
+      .filter((name) => catalogue.about(name).group === "law")
       .map((name) => line(name, value(name)))
       .join("");
   }
@@ -101,9 +92,11 @@ function tablesOf(state, catalogue, names) {
 /** The table [fixed] of parameters, without those that are as if not given. */
 function fixedOf(state, catalogue, names) {
   const value = (name) => catalogue.value(state, name);
-  const usual = (name) =>
-    FOLDED.includes(name) && value(name) === catalogue.about(name).default;
-  const kept = names.filter((name) => !ofLaw(name) && !usual(name));
+  const usual = (name) => {
+    const { page, default: usually } = catalogue.about(name);
+    return page.folded && value(name) === usually;
+  };
+  const kept = names.filter((name) => catalogue.about(name).group !== "law" && !usual(name));
   return kept.map((name) => line(name, value(name))).join("");
 }
 
