@@ -11,7 +11,7 @@ use crate::setting::simulation::Simulation;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::slip::case::CaseError;
-use crate::text::Shown;
+use crate::text::{Shown, finite};
 use clap::ValueEnum;
 
 use super::asks::OfStickSlip;
@@ -328,9 +328,9 @@ fn over(share: &BasinShare) -> &'static str {
 /// The share that ends in sliding, in words.
 fn sliding(share: &BasinShare) -> String {
     let (Some(least), Some(error), Some(most), Some([low, high])) = (
-        share.basin_share,
-        share.basin_share_error,
-        share.basin_share_upper,
+        finite(share.basin_share),
+        finite(share.basin_share_error),
+        finite(share.basin_share_upper),
         share.interval,
     ) else {
         return "no share: there is no uncontrolled stick-slip to switch on in".into();

@@ -6,6 +6,7 @@ use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::linear::best::Optimum;
 use crate::report::numbers::{counted, rounded, unit_behind};
 use crate::setting::{Field, Parameter};
+use crate::text::finite;
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;
@@ -151,13 +152,13 @@ fn print_system(
             row(name, short(value))?;
         }
     }
-    if let Some(margin) = point.stability.delay_margin {
+    if let Some(margin) = finite(point.stability.delay_margin) {
         row("delay_margin", short(margin))?;
     }
     if point.memory.is_none() {
         return Ok(());
     }
-    let margin = point.latency_margin.map(short);
+    let margin = finite(point.latency_margin).map(short);
     let margin = margin.unwrap_or_else(|| "infinite, or not known".into());
     row("latency_margin", margin)
 }

@@ -9,7 +9,7 @@ use crate::model::stop::Stop;
 use crate::report::numbers::{counted, rounded, unit_behind};
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
-use crate::text::Shown;
+use crate::text::{Shown, finite};
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema};
@@ -122,7 +122,11 @@ pub(super) fn print(
     let undecided = |name: &str| margins.undecided.contains(&name);
     let looked = &margins.looked_up_to;
     if let Some(gain) = margins.gain_margin {
-        let text = match (gain.lower.filter(|k| *k > 0.0), gain.upper) {
+        let lower = match gain.lower > 0.0 {
+            true => gain.lower,
+            false => f64::NAN,
+        };
+        let text = match (lower, gain.upper) {
             ends if undecided("gain_margin") => known(ends, " times as large"),
             (lower, upper) => between(lower, upper, " times as large"),
         };
@@ -130,7 +134,7 @@ pub(super) fn print(
     }
     for (parameter, margin, last) in [
         (Parameter::Tau, margins.tau_margin, looked.tau_margin),
-        (Parameter::MuPrime, margins.mu_prime_margin, None),
+        (Parameter::MuPrime, margins.mu_prime_margin, f64::NAN),
         (Parameter::V0, margins.v0_margin, looked.v0_margin),
     ] {
         let Some(margin) = margin else { continue };
@@ -143,15 +147,15 @@ pub(super) fn print(
         row(&name, text + &up_to(last, &unit))?;
     }
     print_loop(&mut row, margins, units)?;
-    if let (Some(found), Some(proved)) = (&margins.stability_box, margins.stability_radius) {
-        row("stability_radius", radius(proved, found))?;
+    if let Some(found) = &margins.stability_box {
+        row("stability_radius", radius(margins.stability_radius, found))?;
     }
     tell_dimensionless(out, units)
 }
 
 /// The end that is known of a margin whose other end is not decided.
-fn known(ends: (Option<f64>, Option<f64>), unit: &str) -> String {
-    match ends {
+fn known((lower, upper): (f64, f64), unit: &str) -> String {
+    match (finite(lower), finite(upper)) {
         (Some(lower), None) => format!(
             "from {}{unit} on; the upper end is not decided",
             rounded(lower, 9)
@@ -186,10 +190,10 @@ fn print_loop(
             "infinite: no latency matters",
         ),
     ] {
-        let text = match value {
+        let text = match finite(value) {
             _ if margins.undecided.contains(&name) => "not decided".into(),
             Some(value) => format!("{}{unit}", rounded(value, 8)),
-            None if name == "latency_margin" && last.is_some() => {
+            None if name == "latency_margin" && last.is_finite() => {
                 format!("no latency matters{}", up_to(last, unit))
             }
             None => endless.to_owned(),
@@ -200,14 +204,14 @@ fn print_loop(
 }
 
 /// Up to where an end was looked for that was not found.
-fn up_to(last: Option<f64>, unit: &str) -> String {
-    last.map_or_else(String::new, |last| {
+fn up_to(last: f64, unit: &str) -> String {
+    finite(last).map_or_else(String::new, |last| {
         format!("; looked at up to {}{unit}", rounded(last, 8))
     })
 }
 
-fn between(lower: Option<f64>, upper: Option<f64>, unit: &str) -> String {
-    let digits = |end: Option<f64>| end.map(|end| rounded(end, 8));
+fn between(lower: f64, upper: f64, unit: &str) -> String {
+    let digits = |end| finite(end).map(|end| rounded(end, 8));
     match (digits(lower), digits(upper)) {
         (None, None) => "whatever it is".into(),
         (None, Some(upper)) => format!("up to {upper}{unit}"),
@@ -223,8 +227,8 @@ fn along(margin: &Margin, at: f64, unit: &str) -> String {
         0.0 => String::new(),
         at => format!(", {:.1} %", 100.0 * (distance / at).abs()),
     };
-    let away = |sign: &str, distance: Option<f64>| {
-        distance.map(|d| format!("{sign}{}{unit}{}", rounded(d, 5), share(d)))
+    let away = |sign: &str, distance| {
+        finite(distance).map(|d| format!("{sign}{}{unit}{}", rounded(d, 5), share(d)))
     };
     let ways: Vec<String> = [away("-", margin.lower), away("+", margin.upper)]
         .into_iter()

@@ -9,7 +9,7 @@ use crate::report::numbers::unit_behind;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter, Setting};
 use crate::sweep::relaxation_time;
-use crate::text::Shown;
+use crate::text::{Shown, finite};
 
 use super::asked::Asked;
 use super::output::tell_dimensionless;
@@ -33,7 +33,7 @@ fn print_spectrum(
     units: &Units,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let certified = match (spectrum.certified, spectrum.certificate_margin) {
+    let certified = match (spectrum.certified, finite(spectrum.certificate_margin)) {
         (true, Some(margin)) => format!(
             "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), \
             |abscissa|)"
@@ -147,7 +147,7 @@ fn print_system(
     if point.memory.is_none() {
         return Ok(());
     }
-    let margin = point.latency_margin;
+    let margin = finite(point.latency_margin);
     let margin = margin.map_or("infinite, or not known".into(), |m| Shown(m).to_string());
     row("latency_margin", margin)
 }
@@ -177,7 +177,7 @@ fn print_stability(
         )?;
     }
     let time = unit_behind(&units.time());
-    let margin = match stability.delay_margin {
+    let margin = match finite(stability.delay_margin) {
         Some(margin) => format!("{}{time}", Shown(margin)),
         None if stability.delay_margin_kind == MarginKind::Infinite => {
             "infinite: no delay changes stability".into()
@@ -197,10 +197,10 @@ fn print_stability(
         ),
     ] {
         let unit = unit_behind(&unit);
-        let text = value.map_or("unknown".into(), |v| format!("{}{unit}", Shown(v)));
+        let text = finite(value).map_or("unknown".into(), |v| format!("{}{unit}", Shown(v)));
         row(name, text)?;
     }
-    if let Some(essential) = stability.essential_abscissa {
+    if let Some(essential) = finite(stability.essential_abscissa) {
         let unit = unit_behind(&units.rate());
         row(
             "essential",
@@ -241,8 +241,9 @@ fn print_delays(
         row("stable delays", "none".into())?;
     }
     for interval in intervals.iter().take(INTERVALS_SHOWN) {
-        let end = interval[1].map_or("infinity".into(), |to| format!("{}{time}", Shown(to)));
-        let from = Shown(interval[0].unwrap_or(0.0));
+        let end =
+            finite(interval[1]).map_or("infinity".into(), |to| format!("{}{time}", Shown(to)));
+        let from = Shown(interval[0]);
         row("stable delays", format!("{from}{time} < tau < {end}"))?;
     }
     match intervals.len().saturating_sub(INTERVALS_SHOWN) {

@@ -10,6 +10,7 @@ use crate::setting::point_file::PointOf;
 use crate::setting::search::{self, PHASES};
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter, Setting};
+use crate::text::finite;
 use clap::ValueEnum;
 use serde::Serialize;
 use serde_json::Value;
@@ -125,8 +126,8 @@ const DIGITS: usize = 5;
 /// The bounds of v_c in words, if it is undecided.
 fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
     let unit = unit_behind(&Field::Vc.unit(units));
-    let lower = found.vc_lower.map(|v| bound(v, DIGITS, false));
-    let upper = found.vc_upper.map(|v| bound(v, DIGITS, true));
+    let lower = finite(found.vc_lower).map(|v| bound(v, DIGITS, false));
+    let upper = finite(found.vc_upper).map(|v| bound(v, DIGITS, true));
     let ends = match (lower, upper) {
         (None, None) => String::new(),
         (None, Some(upper)) => format!(", below {upper}{unit}"),
@@ -139,7 +140,7 @@ fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
 /// Warns if v_c lies beyond the points of a measured friction law.
 pub(super) fn warn_beyond_curve(setting: &Setting, found: &CriticalVelocity, units: &Units) {
     // 0 is no velocity at which it slides: stick-slip is never sustained.
-    let vc = found.vc.filter(|vc| found.decided && *vc > 0.0);
+    let vc = finite(found.vc).filter(|vc| found.decided && *vc > 0.0);
     let vc = vc.and_then(|vc| rounded(vc, DIGITS).parse().ok());
     output::warn_beyond_curve(vc.and_then(|vc| setting.vc_beyond_curve(vc, units)));
 }
@@ -151,13 +152,13 @@ pub(super) fn print_short(
     units: &Units,
 ) -> std::io::Result<()> {
     let unit = unit_behind(&Field::Vc.unit(units));
-    let vc = match (not_known(found, units), found.vc) {
+    let vc = match (not_known(found, units), finite(found.vc)) {
         (Some(text), _) => text,
         (None, Some(vc)) => format!("{}{unit}", rounded(vc, DIGITS)),
         (None, None) => format!("none: {}", found.outcome),
     };
     writeln!(out, "  {:<16} {vc}", Field::Vc.name())?;
-    if let Some(v) = found.v_liftoff.filter(|_| found.decided) {
+    if let Some(v) = finite(found.v_liftoff).filter(|_| found.decided) {
         writeln!(
             out,
             "  {:<16} {}{unit}",

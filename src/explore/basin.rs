@@ -4,7 +4,6 @@ use std::convert::Infallible;
 
 use serde::Serialize;
 
-use super::finite;
 use crate::answers::basin::{Asked, Place, Region, STUDENT_95, Tally};
 use crate::setting::Setting;
 use crate::setting::basin::{Basin, SCRAMBLINGS};
@@ -79,16 +78,16 @@ impl Followed {
 pub struct BasinShare {
     /// The share of those that are known to slide; null where there is no uncontrolled stick-slip
     /// to switch on in.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub basin_share: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub basin_share: f64,
     /// The standard error of it and of `basin_share_upper`, from the spread between scramblings:
     /// 3.1 starts of all at least where fewer than five differ from the others. 0 where sliding is
     /// linearly unstable, null where the share is.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub basin_share_error: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub basin_share_error: f64,
     /// The share if all undecided starts ended in sliding; null where the share is.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub basin_share_upper: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub basin_share_upper: f64,
     /// In which the share lies with 95 % confidence, undecided starts taken either way; null where
     /// the share is.
     #[cfg_attr(feature = "serve", schema(required))]
@@ -158,11 +157,11 @@ impl BasinShare {
             Region::None => (None, None, None),
         };
         Self {
-            basin_share: finite(cell.share),
-            basin_share_error: finite(cell.error),
-            basin_share_upper: finite(cell.upper),
-            interval: finite(cell.share)
-                .map(|share| [(share - half).max(0.0), (cell.upper + half).min(1.0)]),
+            basin_share: cell.share,
+            basin_share_error: cell.error,
+            basin_share_upper: cell.upper,
+            interval: (!cell.share.is_nan())
+                .then(|| [(cell.share - half).max(0.0), (cell.upper + half).min(1.0)]),
             linearly_unstable: followed.asked.unstable(),
             over: followed.basin.over.name(),
             starts: followed.outcomes.len() as u32,

@@ -63,7 +63,7 @@ pub struct KnownPage {
     pub slider: [f64; 2],
     /// The ends of its axis at first.
     pub axis: [f64; 2],
-    /// The box in which its slider is folded away: `feedback` or `model`; none where it is in sight.
+    /// The box that folds its slider away: `feedback` or `model`; none where it is in sight.
     #[cfg_attr(feature = "serve", schema(required))]
     pub folded: Option<&'static str>,
 }

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::finite;
 use crate::model::{FrictionLaw, ModelError};
 use crate::setting::Parameter;
 use crate::setting::law_kind::LawKind;
 use crate::setting::point_file::PointSpec;
+use crate::text::finite;
 
 /// Number of speeds on a curve.
 const SPEEDS: u32 = 201;

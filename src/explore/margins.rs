@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::finite;
 use super::stability::Stability;
 use crate::answers::margins::Around;
 use crate::linear::margins::{Limits, Margins as Search, Radius};
@@ -24,12 +23,12 @@ pub struct Margins {
     pub gain_margin: Option<Range>,
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting does not have the decay rate.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub phase_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub phase_margin: f64,
     /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
     /// the setting without latency does not have the decay rate.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub latency_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub latency_margin: f64,
     /// The delays between which the setting keeps the decay rate; null where it does not have it.
     #[cfg_attr(feature = "serve", schema(required))]
     pub tau_margin: Option<Margin>,
@@ -43,8 +42,8 @@ pub struct Margins {
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
     /// it does not have it, null where that is not known.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub stability_radius: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub stability_radius: f64,
     /// That box; null where the setting does not have the decay rate.
     #[cfg_attr(feature = "serve", schema(required))]
     pub stability_box: Option<StabilityBox>,
@@ -56,22 +55,32 @@ pub struct Margins {
 }
 
 /// The ends of searches in which nothing was lost; beyond them nothing is known.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LookedUpTo {
     /// The factor of both gains; null where the upper end is known, known not to be, or not
     /// decided.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub gain_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub gain_margin: f64,
     /// The latency; null where the margin is known.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub latency_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub latency_margin: f64,
     /// The delay; null where the upper end is known, known not to be, or not decided.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub tau_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub tau_margin: f64,
     /// The sliding velocity; null where the upper end is known, and without a friction law.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub v0_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub v0_margin: f64,
+}
+
+impl LookedUpTo {
+    /// No search that ended without a loss.
+    const NONE: Self = Self {
+        gain_margin: f64::NAN,
+        latency_margin: f64::NAN,
+        tau_margin: f64::NAN,
+        v0_margin: f64::NAN,
+    };
 }
 
 /// Both ends of a range.
@@ -79,11 +88,11 @@ pub struct LookedUpTo {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Range {
     /// The lower end; null where there is none.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub lower: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub lower: f64,
     /// The upper end; null where there is none.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub upper: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub upper: f64,
 }
 
 /// How far a parameter may go down and up.
@@ -91,17 +100,17 @@ pub struct Range {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Margin {
     /// The distance downwards; null where no smaller value matters.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub lower: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub lower: f64,
     /// The distance upwards; null where no larger value matters.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub upper: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub upper: f64,
     /// The value below at which stability, or the decay rate, is lost; null where at none.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub from: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub from: f64,
     /// The value above; null where at none.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub to: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub to: f64,
 }
 
 /// A box of relative changes, all of them at most the stability radius.
@@ -143,7 +152,7 @@ impl Margins {
             // That counts from no latency at all, whatever holds at the setting's own.
             let latency = around.latency(&mut Search::default());
             margins.note("latency_margin", &[latency]);
-            margins.latency_margin = finite(latency);
+            margins.latency_margin = latency;
         }
         Ok(Some(margins))
     }
@@ -157,28 +166,21 @@ impl Margins {
         };
         // This margin counts from no latency, whatever the setting's own latency is.
         let latency = stability.latencies.margin.unwrap_or(f64::NAN);
-        margins.latency_margin = finite(latency);
+        margins.latency_margin = latency;
         margins.note("latency_margin", &[latency]);
         if !margins.decays {
             return margins;
         }
-        let inside = |&&[from, to]: &&[Option<f64>; 2]| {
-            from.unwrap_or(0.0) <= tau && to.is_none_or(|to| tau < to)
-        };
+        let inside = |&&[from, to]: &&[f64; 2]| from <= tau && tau < to;
         let intervals = stability.stable_delays.as_deref().unwrap_or_default();
         let interval = intervals.iter().find(inside);
-        margins.tau_margin = interval.map(|[from, to]| {
-            let limits = Limits {
-                lower: from.unwrap_or(0.0),
-                upper: to.unwrap_or(f64::INFINITY),
-            };
-            Margin::of(tau, limits, 0.0)
-        });
+        margins.tau_margin =
+            interval.map(|&[lower, upper]| Margin::of(tau, Limits { lower, upper }, 0.0));
         if interval.is_none() {
             margins.undecided.push("tau_margin");
         }
-        margins.phase_margin = None;
-        margins.stability_radius = None;
+        margins.phase_margin = f64::NAN;
+        margins.stability_radius = f64::NAN;
         margins.undecided.extend([
             "gain_margin",
             "phase_margin",
@@ -195,15 +197,15 @@ impl Margins {
             required_decay,
             decays: false,
             gain_margin: None,
-            phase_margin: Some(0.0),
-            latency_margin: Some(0.0),
+            phase_margin: 0.0,
+            latency_margin: 0.0,
             tau_margin: None,
             mu_prime_margin: None,
             v0_margin: None,
-            stability_radius: Some(0.0),
+            stability_radius: 0.0,
             stability_box: None,
             undecided: Vec::new(),
-            looked_up_to: LookedUpTo::default(),
+            looked_up_to: LookedUpTo::NONE,
         }
     }
 
@@ -212,14 +214,14 @@ impl Margins {
         let gain = around.gain(&mut search);
         self.note("gain_margin", &[gain.lower, gain.upper]);
         self.gain_margin = Some(Range {
-            lower: finite(gain.lower),
-            upper: finite(gain.upper),
+            lower: gain.lower,
+            upper: gain.upper,
         });
         let of_loop = around.of_loop(&mut search);
         self.note("phase_margin", &[of_loop.phase]);
         self.note("latency_margin", &[of_loop.latency]);
-        self.phase_margin = finite(of_loop.phase);
-        self.latency_margin = finite(of_loop.latency);
+        self.phase_margin = of_loop.phase;
+        self.latency_margin = of_loop.latency;
         let delay = around.delay();
         self.note("tau_margin", &[delay.lower, delay.upper]);
         self.tau_margin = Some(Margin::of(setting.get(Parameter::Tau), delay, 0.0));
@@ -234,16 +236,19 @@ impl Margins {
             self.mu_prime_margin = Some(Margin::of(at, limits, f64::NEG_INFINITY));
         }
         // Only for infinite ends; NaN is reported as undecided.
-        let last = |end: f64, last: f64| finite(last).filter(|_| end == f64::INFINITY);
+        let last = |end: f64, last: f64| match end == f64::INFINITY {
+            true => last,
+            false => f64::NAN,
+        };
         let reach = around.reach();
         self.looked_up_to = LookedUpTo {
             gain_margin: last(gain.upper, reach.gain),
             latency_margin: last(of_loop.latency, reach.latency),
             tau_margin: last(delay.upper, reach.delay),
-            v0_margin: around.highest_v0().and_then(|v0| last(limits.upper, v0)),
+            v0_margin: last(limits.upper, around.highest_v0().unwrap_or(f64::NAN)),
         };
         let radius = around.radius();
-        self.stability_radius = Some(radius.proved);
+        self.stability_radius = radius.proved;
         self.stability_box = Some(StabilityBox::of(&radius, third));
     }
 
@@ -258,13 +263,15 @@ impl Margin {
     /// A margin from limits. A lower limit at `least`, the lower end of the parameter's range,
     /// loses nothing.
     fn of(at: f64, limits: Limits, least: f64) -> Self {
-        let from = finite(limits.lower).filter(|from| *from > least);
-        let to = finite(limits.upper);
+        let from = match limits.lower <= least {
+            true => f64::NEG_INFINITY,
+            false => limits.lower,
+        };
         Self {
-            lower: from.map(|from| at - from),
-            upper: to.map(|to| to - at),
+            lower: at - from,
+            upper: limits.upper - at,
             from,
-            to,
+            to: limits.upper,
         }
     }
 }

@@ -16,7 +16,7 @@
 //! - [`mod@answer`]: all of these by the names of requests; [`problem`]: the reply where there is
 //!   no answer
 //!
-//! Missing numbers and infinities are `null` in JSON.
+//! Numbers that are missing or not known are NaN; these and infinities are `null` in JSON.
 //!
 //! - `answer`: every request by its name, with its answer as bytes: common to the server and the
 //!   page without one
@@ -44,8 +44,3 @@ pub mod wasm;
 
 pub use answer::{Asked, Limits, Request, answer};
 pub use problem::Problem;
-
-/// The value, if JSON can represent it.
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
-}

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::finite;
 use super::margin_kind::MarginKind;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
@@ -14,6 +13,7 @@ use crate::model::stop::Stop;
 use crate::setting::linear_model::NoAnswer;
 use crate::setting::system::SystemModel;
 use crate::setting::{Parameter, Setting};
+use crate::text::finite;
 
 /// Linear stability at a point.
 #[derive(Debug, Clone, Serialize)]
@@ -74,8 +74,8 @@ pub struct SystemPoint {
     /// The largest latency of the feedback, counted from none, at which the setting stays stable; 0
     /// where it is unstable without latency. Null where it is infinite or unknown, and for P and Q,
     /// which have no latency.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub latency_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub latency_margin: f64,
     /// Its stability, with its roots.
     #[serde(flatten)]
     pub stability: Stability,
@@ -142,7 +142,7 @@ impl SystemPoint {
             memory: of_feedback(Parameter::Memory),
             latency: of_feedback(Parameter::Latency),
             line_of_delays,
-            latency_margin: stability.latencies.margin.and_then(finite),
+            latency_margin: stability.latencies.margin.unwrap_or(f64::NAN),
             stability,
         }
     }
@@ -152,7 +152,7 @@ impl SystemPoint {
 fn forget_other_delays(stability: &mut Stability) {
     stability.stable_delays = None;
     stability.stable_delays_truncated = false;
-    stability.delay_margin = None;
+    stability.delay_margin = f64::NAN;
     stability.delay_margin_kind = MarginKind::Unknown;
     stability.delay_margin_sign = 0;
     stability.n_at_zero_delay = None;

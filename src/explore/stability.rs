@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::finite;
 use super::margin_kind::{MarginKind, sign};
 use super::stable_line::{Latencies, ends};
 use crate::linear::Direction;
@@ -33,14 +32,14 @@ pub struct Stability {
     /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
     /// one is null where it has none. Empty where it is stable at none, null where they are not
     /// known.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub stable_delays: Option<Vec<[Option<f64>; 2]>>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<Vec<[Option<f64>; 2]>>, required))]
+    pub stable_delays: Option<Vec<[f64; 2]>>,
     /// Some are left out.
     pub stable_delays_truncated: bool,
     /// The distance in τ to the nearest change of stability, positive where stable; null where it
     /// never changes, and where it is not known.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub delay_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub delay_margin: f64,
     /// What that distance is: `finite`, `infinite` or `unknown`.
     pub delay_margin_kind: MarginKind,
     /// The sign of that distance, also of an infinite one: 1 where stable, −1 where unstable, 0 on
@@ -63,8 +62,8 @@ pub struct Stability {
     #[serde(flatten)]
     pub latencies: Latencies,
     /// The real part at which infinitely many roots accumulate; null where they do nowhere.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub essential_abscissa: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub essential_abscissa: f64,
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
@@ -95,23 +94,23 @@ pub struct PointCrossing {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Spectrum {
     /// The spectral abscissa; null where no root converged.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub abscissa: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub abscissa: f64,
     /// |Im λ| of the rightmost root; null where no root converged, and where there is none.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub frequency: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub frequency: f64,
     /// Re λ and Im λ ≥ 0, by falling real part.
     pub roots: Vec<[f64; 2]>,
     /// Whether the argument principle confirms that none is missing.
     pub certified: bool,
     /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|); null where no
     /// root converged.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub certificate_margin: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub certificate_margin: f64,
     /// Re λ of a vertical line, right of the rightmost root, that the argument principle finds no
     /// root right of; null where it does not tell.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub certified_line: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub certified_line: f64,
     /// Why there are fewer roots than asked for.
     #[serde(skip)]
     pub fewer: Option<String>,
@@ -152,16 +151,16 @@ impl Stability {
             certificate_margin,
             certified_line,
             ..
-        } = &self.spectrum;
-        let (Some(n), Some(abscissa)) = (self.n_unstable, *abscissa) else {
+        } = self.spectrum;
+        let Some(n) = self.n_unstable.filter(|_| abscissa.is_finite()) else {
             return false;
         };
         let none_right = match self.reason == Some(Reason::NoRightmostRoot.name()) {
             true => abscissa < 0.0,
-            false => certified_line.is_some_and(|line| line <= 0.0),
+            false => certified_line <= 0.0,
         };
         let unit = abscissa.abs().max(1.0 / time_unit);
-        let some_right = certificate_margin.is_some_and(|margin| abscissa > margin * unit);
+        let some_right = abscissa > certificate_margin * unit;
         if n == 0 { some_right } else { none_right }
     }
 
@@ -185,7 +184,7 @@ impl Stability {
             reason: found.reason.map(Reason::name),
             stable_delays: delays_known.then_some(stable),
             stable_delays_truncated: delays_known && truncated,
-            delay_margin: finite(delay_margin),
+            delay_margin,
             delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
             n_at_zero_delay: line.n_at_zero_delay(),
@@ -195,7 +194,7 @@ impl Stability {
                 .crossings_known()
                 .then(|| line.crossings().map(PointCrossing::of).collect()),
             latencies: Latencies::default(),
-            essential_abscissa: finite(found.essential_abscissa / time_unit),
+            essential_abscissa: found.essential_abscissa / time_unit,
             line: wanted.line,
             n_right_of_line: wanted.line.and_then(count_right),
             spectrum: Spectrum::of(roots, &found, (at, time_unit), wanted.roots),
@@ -237,13 +236,15 @@ impl Spectrum {
             None => no_more(found.reason, tau == 0.0, roots.uncontrolled()).to_owned(),
         };
         Self {
-            abscissa: finite(found.abscissa / time_unit),
-            frequency: listed.first().map(|root| root[1]),
+            abscissa: found.abscissa / time_unit,
+            frequency: listed.first().map_or(f64::NAN, |root| root[1]),
             fewer: (listed.len() < wanted.into()).then(why),
             roots: listed,
             certified: found.certified,
-            certificate_margin: finite(found.margin),
-            certified_line: line.filter(nothing_right).map(|line| line / time_unit),
+            certificate_margin: found.margin,
+            certified_line: line
+                .filter(nothing_right)
+                .map_or(f64::NAN, |line| line / time_unit),
             incomplete: found.missing.is_some(),
         }
     }

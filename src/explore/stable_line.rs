@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::finite;
 use crate::linear::general::{DelayLine, System};
 use crate::linear::line::Intervals;
 use crate::linear::stable_delays::StableInterval;
@@ -18,8 +17,8 @@ pub struct Latencies {
     /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
     /// latency; the end of the last one is null where it has none. Null where latency has no
     /// meaning in the system.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<Vec<[Option<f64>; 2]>>, required))]
+    pub stable_latencies: Option<Vec<[f64; 2]>>,
     /// Some are left out.
     pub stable_latencies_truncated: bool,
     /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency
@@ -45,10 +44,9 @@ impl Latencies {
     }
 }
 
-/// The ends of stable intervals, and whether some are left out; the end of the last interval is
-/// none where it has none.
-pub(super) fn ends(mut intervals: &mut dyn Intervals) -> (Vec<[Option<f64>; 2]>, bool) {
-    let ends = |s: StableInterval| [Some(s.from), finite(s.to)];
+/// The ends of stable intervals, and whether some are left out; the last end may be infinite.
+pub(super) fn ends(mut intervals: &mut dyn Intervals) -> (Vec<[f64; 2]>, bool) {
+    let ends = |s: StableInterval| [s.from, s.to];
     let first = (&mut intervals).take(MOST_INTERVALS).map(ends).collect();
     (first, intervals.next().is_some() || intervals.gave_up())
 }

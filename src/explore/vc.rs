@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::finite;
 use crate::answers::vc;
 use crate::critical::limit::LimitCell;
 use crate::model::ModelError;
@@ -20,17 +19,17 @@ use crate::setting::source::Source;
 pub struct CriticalVelocity {
     /// v_c; null where `outcome` says why there is none: stick-slip persists up to the largest v0
     /// that is tried, or the block lifts off.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub vc: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub vc: f64,
     /// A lower bound of v_c, by a margin below the ends found by all searches; v_c itself where it
     /// is decided. Null where lift-off comes before any stick-slip.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub vc_lower: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub vc_lower: f64,
     /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
     /// decided. Null where neither was seen up to the end of the range, or where slow
     /// searches disagree whether it lifts off.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub vc_upper: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub vc_upper: f64,
     /// The protocol: `follow` or `switch-on`.
     pub protocol: &'static str,
     /// How stick-slip ends there.
@@ -38,17 +37,17 @@ pub struct CriticalVelocity {
     /// Where it survives: v0 from and to.
     pub windows: Vec<[f64; 2]>,
     /// The smallest v0 at which N ≤ 0 occurs; null where that does not end stick-slip.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub v_liftoff: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub v_liftoff: f64,
     /// Time stuck in a period at v_c; null where no orbit of stick-slip is known there.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub stick_time: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub stick_time: f64,
     /// Time in slip in a period at v_c; null where no orbit of stick-slip is known there.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub slip_time: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub slip_time: f64,
     /// The smallest load at v_c; null where no orbit of stick-slip is known there.
-    #[cfg_attr(feature = "serve", schema(required))]
-    pub n_min: Option<f64>,
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub n_min: f64,
     /// What gave the answer.
     pub method: &'static str,
     /// Whether it is known what becomes of the motion beyond v_c.
@@ -65,16 +64,16 @@ impl CriticalVelocity {
         let found = vc::asked(setting)?.until(stop.clone()).find(protocol);
         let critical = found.critical;
         Ok(Self {
-            vc: finite(critical.vc),
-            vc_lower: finite(critical.vc_lower),
-            vc_upper: finite(critical.vc_upper),
+            vc: critical.vc,
+            vc_lower: critical.vc_lower,
+            vc_upper: critical.vc_upper,
             protocol: protocol.name(),
             outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
             windows: found.windows,
-            v_liftoff: finite(critical.v_liftoff),
-            stick_time: finite(critical.stick_time),
-            slip_time: finite(critical.slip_time),
-            n_min: finite(critical.n_min),
+            v_liftoff: critical.v_liftoff,
+            stick_time: critical.stick_time,
+            slip_time: critical.slip_time,
+            n_min: critical.n_min,
             method: critical.method.name(),
             decided: critical.decided,
         })
@@ -92,7 +91,7 @@ pub struct ShortDelay {
     pub mu_ratio: f64,
     /// The values of the fields.
     #[serde(flatten)]
-    pub fields: BTreeMap<&'static str, Option<f64>>,
+    pub fields: BTreeMap<&'static str, f64>,
 }
 
 impl ShortDelay {
@@ -105,7 +104,7 @@ impl ShortDelay {
         let fields = Field::ALL
             .into_iter()
             .filter_map(|field| match field.source() {
-                Source::Limit(value) => Some((field.name(), finite(value(&found)))),
+                Source::Limit(value) => Some((field.name(), value(&found))),
                 _ => None,
             });
         Ok(Self {

@@ -111,6 +111,17 @@ impl Setting {
 
     /// The linear model and the unit of time √(M/κ).
     ///
+    /// ```
+    /// use slipmap::model::stop::Stop;
+    /// use slipmap::setting::Setting;
+    ///
+    /// let numbers = [("mu_prime", -0.3), ("alpha_v", -0.33), ("tau", 4.15)];
+    /// let (linear, time_unit) = Setting::checked(numbers, None, &[])?.linear()?;
+    /// let roots = linear.roots(&Stop::default());
+    /// assert_eq!(roots.count(4.15, time_unit).unwrap().n_unstable, 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// When a parameter is outside the model's range, or an expression has no value.
     pub fn linear(&self) -> Result<(Linear, f64), NoAnswer> {

@@ -63,7 +63,7 @@ pub struct Flag {
     pub help: &'static str,
 }
 
-/// The boxes of the page in which sliders are folded away, as they are most often at their defaults.
+/// The boxes of the page in which sliders are folded away: most often they are at their defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Folded {
     /// The feedback beyond the letter's.

@@ -18,6 +18,6 @@ mod toml_size;
 
 #[cfg(feature = "sweep")]
 pub use hexadecimal::in_hexadecimal;
-pub use number::Shown;
+pub use number::{Shown, finite};
 #[cfg(feature = "sweep")]
 pub use toml_reader::SpecError;

@@ -18,6 +18,12 @@ impl fmt::Display for Shown {
     }
 }
 
+/// The value, if it is finite.
+#[must_use]
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::Shown;

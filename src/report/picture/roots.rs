@@ -14,6 +14,7 @@ use crate::explore::along_delay::AlongDelay;
 use crate::explore::point::BlockPoint;
 use crate::setting::Parameter;
 use crate::setting::units::Units;
+use crate::text::finite;
 
 /// Share of the width for the complex plane.
 const PLANE: f64 = 0.56;
@@ -84,7 +85,7 @@ fn notes(picture: &PointPicture) -> Vec<Rich> {
         .map(|(parameter, value)| assignment(parameter, value, &units.of_parameter(parameter)))
         .collect();
     notes.push(Rich::plain(&verdict(point)));
-    if let Some(abscissa) = point.stability.spectrum.abscissa {
+    if let Some(abscissa) = finite(point.stability.spectrum.abscissa) {
         let rate = suffix(&units.rate(), " ", "");
         notes.push(Rich::plain(&format!(
             "spectral abscissa {}{rate}",
@@ -128,7 +129,7 @@ fn draw_plane(picture: &PointPicture, area: Area, scene: &mut Scene) {
     scene.rect((axis, top), (panel.area.right, bottom), half_plane());
     stack.draw_grid(scene);
     scene.ruler((axis, top), (axis, bottom), INK, MARK_WIDTH * u);
-    if let Some(line) = spectrum.certified_line {
+    if let Some(line) = finite(spectrum.certified_line) {
         let x = panel.across(line);
         scene.dashed(
             &[(x, bottom), (x, top)],
@@ -247,7 +248,7 @@ fn legend(picture: &PointPicture) -> Legend {
         let text = format!("the next ones, {} in all", number_of(roots));
         entry(Swatch::Dot(last, DOT), &text);
     }
-    if point.stability.spectrum.certified_line.is_some() {
+    if point.stability.spectrum.certified_line.is_finite() {
         let line = Swatch::Dashed(SOFT_INK, 0.7 * MARK_WIDTH, DASH);
         entry(line, "no root is right of it, certified");
     }
