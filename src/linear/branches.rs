@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
-use super::equation::{Equation, Pair};
+use super::equation::Equation;
 use super::newton::divide;
 use super::roots::narrowed;
 use crate::model::Groups;
@@ -56,11 +56,10 @@ impl LetterPair {
             .into_iter()
             .flat_map(|(linear, constant)| quadratic_zeros(linear, constant))
     }
-}
 
-impl Pair for LetterPair {
+    /// P, P′, Q and Q′ at λ.
     #[inline]
-    fn at(&self, lambda: Complex64) -> [Complex64; 4] {
+    pub(super) fn at(&self, lambda: Complex64) -> [Complex64; 4] {
         [
             lambda * (lambda + self.p1) + self.p0,
             2.0 * lambda + self.p1,
@@ -116,7 +115,7 @@ struct Branches<P> {
     kappa: f64,
 }
 
-impl<P: Pair> Branches<P> {
+impl<P: Fn(Complex64) -> [Complex64; 4]> Branches<P> {
     fn frequency(&self, j: usize) -> f64 {
         PI * j as f64 / self.span
     }
@@ -128,7 +127,7 @@ impl<P: Pair> Branches<P> {
 
     /// Whether feedback is the larger term on the line.
     fn inside(&self, omega: f64) -> bool {
-        let [p, _, q, _] = self.pair.at(Complex64::new(self.line, omega));
+        let [p, _, q, _] = (self.pair)(Complex64::new(self.line, omega));
         p.norm_sqr() <= self.kappa * self.kappa * q.norm_sqr()
     }
 
@@ -172,12 +171,16 @@ impl<P: Pair> Branches<P> {
 }
 
 /// Newton's method on λτ = log(−Q/P) + 2πik from the branch that `omega` belongs to.
-fn follow_branch(pair: &impl Pair, (tau, span): (f64, f64), omega: f64) -> Option<Complex64> {
+fn follow_branch(
+    pair: impl Fn(Complex64) -> [Complex64; 4],
+    (tau, span): (f64, f64),
+    omega: f64,
+) -> Option<Complex64> {
     let on_axis = Complex64::new(0.0, omega);
-    let [p, _, q, _] = pair.at(on_axis);
+    let [p, _, q, _] = pair(on_axis);
     let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / span, omega);
     for _ in 0..STEPS {
-        let [p, slope, q, q_slope] = pair.at(lambda);
+        let [p, slope, q, q_slope] = pair(lambda);
         let log = -divide(p, q);
         let log = Complex64::new(0.5 * ln(log.norm_sqr()), arg(log));
         let mut mismatch = lambda * tau + log;
@@ -227,9 +230,15 @@ pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Comp
 const HALVINGS: u32 = 8;
 
 /// A start in each part of the real axis right of `line` in which D changes its sign.
-fn real_starts(pair: &impl Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
+fn real_starts(
+    pair: impl Fn(Complex64) -> [Complex64; 4],
+    tau: f64,
+    line: f64,
+    radius: f64,
+    starts: &mut Vec<Complex64>,
+) {
     let value = |s: f64| {
-        let [p, _, q, _] = pair.at(Complex64::from(s));
+        let [p, _, q, _] = pair(Complex64::from(s));
         p.re + q.re * exp(-s * tau)
     };
     let place = |i: u32| line + (radius + 1e-9 - line) * f64::from(i) / f64::from(REAL_PARTS);

@@ -6,7 +6,7 @@ use super::branches::{LetterPair, quadratic_zeros, slow_starts};
 use super::certificate::{UnstableCount, roots_right_of};
 use super::characteristic::{Jet, root_bound};
 use super::collocation::eigenvalues;
-use super::equation::{Equation, Pair};
+use super::equation::Equation;
 use crate::model::Groups;
 
 impl Equation for Groups {
@@ -14,8 +14,9 @@ impl Equation for Groups {
 
     const KEEPS_MARGINS: bool = false;
 
-    fn pair(self) -> impl Pair {
-        LetterPair::new(self)
+    fn pair(self) -> impl Fn(Complex64) -> [Complex64; 4] {
+        let pair = LetterPair::new(self);
+        move |lambda| pair.at(lambda)
     }
 
     #[inline]

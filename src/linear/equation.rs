@@ -4,12 +4,6 @@ use num_complex::Complex64;
 
 use super::characteristic::Jet;
 
-/// P and Q of an equation.
-pub trait Pair {
-    /// P, P′, Q and Q′ at λ.
-    fn at(&self, lambda: Complex64) -> [Complex64; 4];
-}
-
 /// D and D′ with a bound on the rounding of D, evaluated with twice the digits.
 #[derive(Debug, Clone, Copy)]
 pub struct Exact {
@@ -32,8 +26,8 @@ pub trait Equation: Copy {
     /// with the margin of the cell before.
     const KEEPS_MARGINS: bool;
 
-    /// P and Q.
-    fn pair(self) -> impl Pair;
+    /// P, P′, Q and Q′ at λ.
+    fn pair(self) -> impl Fn(Complex64) -> [Complex64; 4];
 
     /// Whether there is no feedback: the delay then does not matter.
     fn uncontrolled(self) -> bool;

@@ -6,7 +6,7 @@ use super::regions::{Bound, MOST_STRETCHES, Stretch};
 use super::search::{ByParameters, Family, Place, beside_essential};
 use crate::linear::MarginalTolerance;
 use crate::linear::crossing::Direction;
-use crate::linear::equation::{Equation, Pair};
+use crate::linear::equation::Equation;
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
 use crate::linear::general::{Class, DelayLine, RightOf, RootCounter, System};
 use crate::linear::spectrum::RootFinder;
@@ -126,7 +126,7 @@ impl General<'_> {
         if self.lines {
             // D depends on τ by E = e^(−λτ) alone: −λ Q E, and what d/dλ makes of it.
             let system = (self.system_at)(gain, tau)?;
-            let [_, _, q, q_slope] = (&system).at(lambda);
+            let [_, _, q, q_slope] = system.pair(lambda);
             let delayed = system.jet(tau, lambda).delayed;
             let slope = q + lambda * (q_slope - tau * q);
             return Some([-lambda * q * delayed, -slope * delayed]);

@@ -10,27 +10,15 @@ use super::system::System;
 use super::turning::Turning;
 use super::zeros::Zeros;
 use crate::linear::characteristic::Jet;
-use crate::linear::collocation::eigenvalues;
-use crate::linear::equation::{Equation, Exact, Pair};
-
-impl Pair for &System {
-    #[inline]
-    fn at(&self, lambda: Complex64) -> [Complex64; 4] {
-        if let Some(feedback) = self.late() {
-            return feedback.pair(lambda);
-        }
-        let ([p, p_slope, _], [q, q_slope, _]) = (self.p.jet(lambda), self.q.jet(lambda));
-        [p, p_slope, q, q_slope]
-    }
-}
+use crate::linear::equation::{Equation, Exact};
 
 impl Equation for &RootCounter {
     type Unstable = Option<Turning>;
 
     const KEEPS_MARGINS: bool = true;
 
-    fn pair(self) -> impl Pair {
-        self.system()
+    fn pair(self) -> impl Fn(Complex64) -> [Complex64; 4] {
+        |lambda| self.system().pair(lambda)
     }
 
     fn uncontrolled(self) -> bool {
@@ -50,15 +38,7 @@ impl Equation for &RootCounter {
     }
 
     fn third(self, jet: &Jet, tau: f64, lambda: Complex64) -> Complex64 {
-        // Of P‴ + (Q‴ − 3τQ″ + 3τ²Q′ − τ³Q) E what the delay makes large.
-        if let Some(feedback) = self.system().late() {
-            let [p_third, slope, bend, third] = feedback.thirds(lambda);
-            let turned = tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend;
-            return p_third + jet.delayed * (third + tau * turned);
-        }
-        let [_, slope, bend] = self.system().q.jet(lambda);
-        let p_third = self.system().p.derivative().jet(lambda)[2];
-        p_third + tau * jet.delayed * (tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend)
+        self.system().third(jet, tau, lambda)
     }
 
     fn begin(self) {
@@ -87,7 +67,7 @@ impl Equation for &RootCounter {
 
     fn equal_sizes(self, tau: f64, line: f64) -> Option<Vec<f64>> {
         // With latency they are not the zeros of a polynomial.
-        let polynomial = self.system().late().is_none();
+        let polynomial = self.system().latency() == 0.0;
         let frequencies = || self.frequencies(tau, line).into_iter();
         polynomial.then(|| frequencies().map(|(omega, _)| omega).collect())
     }
@@ -112,27 +92,14 @@ impl Equation for &RootCounter {
     }
 
     fn further_starts(self, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
-        if let Some(feedback) = self.system().late() {
-            if let Some(slow) = feedback.slow(tau) {
-                add_zeros(&slow, starts);
-            }
-            grid(self.system(), tau, line, starts);
-            return;
-        }
-        let q = &self.system().q;
-        let parabola = Polynomial::new(&[0.0, tau, -0.5 * tau * tau]);
-        if let Some(fed) = parabola.ok().and_then(|p| q.times(&p).ok()) {
-            add_zeros(&self.system().without_delay().plus(&fed, -1.0), starts);
+        if let Some(slow) = self.system().slow(tau) {
+            add_zeros(&slow, starts);
         }
         grid(self.system(), tau, line, starts);
     }
 
     fn eigenvalues(self, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
-        if let Some(feedback) = self.system().late() {
-            return feedback.eigenvalues(tau, nodes);
-        }
-        let System { p, q, .. } = self.system();
-        eigenvalues(p.coefficients(), q.coefficients(), tau, nodes)
+        self.system().eigenvalues(tau, nodes)
     }
 }
 

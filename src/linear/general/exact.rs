@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 
+use super::composition::Composition;
 use super::parts::FeedbackForm;
 use super::polynomial::{At, Polynomial};
 use super::system::System;
@@ -89,11 +90,12 @@ impl System {
     /// D at λ with twice the digits; none with latency, and where the delay turns D by more than
     /// the exponential is known for.
     pub(super) fn exact(&self, tau: f64, lambda: Complex64) -> Option<Exact> {
-        if self.late().is_some() || tau * norm(lambda) >= LARGEST_EXPONENT {
+        if tau * norm(lambda) >= LARGEST_EXPONENT {
             return None;
         }
-        let [p, q] = match &self.feedback {
-            Some(FeedbackForm {
+        let [p, q] = match &self.composition {
+            Composition::Late(_) => return None,
+            Composition::Feedback(FeedbackForm {
                 open,
                 gain,
                 channel,
@@ -101,7 +103,7 @@ impl System {
                 let (b, a) = (Jet::at(open, lambda), Jet::at(gain, lambda));
                 [b.plus(&a, -1.0), a.plus(&b, -channel.memory)]
             }
-            None => [Jet::at(&self.p, lambda), Jet::at(&self.q, lambda)],
+            Composition::Direct => [Jet::at(&self.p, lambda), Jet::at(&self.q, lambda)],
         };
         let exponent = DoubleComplex {
             re: Double::product(-lambda.re, tau),

@@ -15,17 +15,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::isolate::MOST;
 use super::parts::Angle;
 use super::precise::resolve::{Resolver, blurred, is_not_0};
 use super::reason::Reason;
-use super::switches::{Switch, Switches, each_switch};
+use super::switches::Switch;
 use super::system::{Class, System};
 use crate::linear::crossing::{Crossing, Direction};
-
-/// An error of a phase that is not worth a slower evaluation, up to the degree of which zeros of F
-/// are isolated and above.
-const ENOUGH: [f64; 2] = [1e-6, 1e-11];
 
 /// The crossings of a line of delays.
 #[derive(Debug, Clone, Default)]
@@ -143,36 +138,23 @@ impl DelayLine {
     fn find_crossings(&mut self, system: &System) {
         let on_axis = system.on_axis();
         let (mut resolver, mut settled) = (Resolver::new(system), true);
-        let near = if let Some(feedback) = system.late() {
-            let mut switches = Switches::default();
-            if !feedback.late_switches(&mut switches) {
+        let near = system.each_on_axis(&on_axis, |switch, phase| {
+            settled &= self.add_crossing(&mut resolver, switch, phase);
+        });
+        let near = match near {
+            Ok(near) => near,
+            Err(None) => {
                 // Too many to be listed: nothing is said but what holds without delay.
                 self.find_without_delay(system);
                 self.at_zero_delay = self.without_delay;
                 self.always_marginal = true;
                 return;
             }
-            for switch in &switches.list {
-                let phase = feedback.late_phase(switch.omega, switch.error);
-                settled &= self.add_crossing(&mut resolver, switch, phase);
-            }
-            switches.near_zero()
-        } else {
-            let mut modulus = on_axis.modulus();
-            if system.class() == Class::NeutralLimit {
-                modulus = modulus.without_open_leading();
-            }
-            let enough = ENOUGH[usize::from(on_axis.degree() > MOST)];
-            let near = each_switch(&modulus, Some(&on_axis), |switch| {
-                let phase = on_axis.phase(switch.omega, switch.error, enough);
-                settled &= self.add_crossing(&mut resolver, &switch, phase);
-            });
-            let Some(near) = near else {
+            Err(reason) => {
                 self.uncounted = true;
-                self.reason = Some(Reason::DegreeUnknown);
+                self.reason = reason;
                 return;
-            };
-            near
+            }
         };
         let origin = !on_axis.on_real_axis().decided();
         if origin {

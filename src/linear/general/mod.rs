@@ -3,6 +3,7 @@
 //! - `polynomial`: P, Q and what is made of them, each coefficient with a bound on its error
 //! - `zeros`: all zeros of such a polynomial, in discs that are known to hold them
 //! - `factored`: the zeros of F from the values of P and Q, where its coefficients cancel
+//! - `composition`: what D is composed of, and all that depends on which it is
 //! - `system`: one setting, its class, and |P|² − |Q|² and D on a vertical line
 //! - `unit`: the unit of time in which a system is of the order of 1, and lines in other units
 //! - `switches`: where |P| and |Q| change places on such a line
@@ -31,6 +32,7 @@
 //! - `routh`: zeros right of the imaginary axis by Routh's array
 //! - `shifted`: P and Q on any vertical line, F = |P|² − |κQ|² there, and the argument of −P Q*
 
+mod composition;
 mod count;
 pub mod curves;
 pub mod ends;

@@ -19,6 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
+use super::composition::Composition;
 use super::latency::{Budget, Form, MOST_STEPS_OF_A_CELL};
 use super::parts::{Angle, Decay};
 use super::polynomial::{MOST_DEGREE, Polynomial};
@@ -148,11 +149,7 @@ impl RootCounter {
     /// A counter for `system`, whose degree is known.
     #[must_use]
     pub fn new(system: &System) -> Self {
-        let [p, q] = match system.late() {
-            // What swings with the latency has no finite number of zeros.
-            Some(feedback) => feedback.polynomials(),
-            None => [&system.p, &system.q],
-        };
+        let [p, q] = system.polynomials();
         Self {
             system: *system,
             p: Factors::of(p),
@@ -220,8 +217,8 @@ impl RootCounter {
         if tau == 0.0 || self.system.uncontrolled() {
             return self.without_delay(tau, line);
         }
-        if let Some(feedback) = self.system.late() {
-            return self.late(feedback, tau, line);
+        if let Composition::Late(feedback) = &self.system.composition {
+            return self.late_right_of(feedback, tau, line);
         }
         let mut turned = WholeTurns::at(tau);
         let without_turns = self.on_line(tau, line, |turn| turned.add(&turn));
@@ -232,7 +229,7 @@ impl RootCounter {
     /// any.
     #[must_use]
     pub fn unstable(&self) -> Option<Turning> {
-        if self.system.late().is_some() {
+        if self.system.latency() > 0.0 {
             return self.late_unstable(Form::Delay, 0.0);
         }
         let mut turns = Vec::with_capacity(self.system.p.degree());
@@ -261,13 +258,7 @@ impl RootCounter {
     /// first, each with the sign with which it counts in (7).
     pub(super) fn frequencies(&self, tau: f64, line: f64) -> Vec<(f64, i8)> {
         let mut switches = Switches::default();
-        if let Some(feedback) = self.system.late() {
-            feedback.switches_on(tau, line, &mut switches);
-        } else if let Some(decay) = Decay::new(line, tau) {
-            let on_line = self.system.on_line(line, decay);
-            let modulus = on_line.modulus().without_open_leading();
-            switches.find(&modulus, Some(&on_line));
-        }
+        self.system.switches_on(tau, line, &mut switches);
         switches.list.iter().map(|s| (s.omega, s.sign)).collect()
     }
 

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 
+use super::composition::Composition;
 use super::parts::{Decay, FeedbackForm, late};
 use super::polynomial::{DegreeTooLarge, Polynomial};
 use super::precise::source::Source;
@@ -34,7 +35,7 @@ pub struct System {
     pub(super) p: Polynomial,
     /// Q.
     pub(super) q: Polynomial,
-    pub(super) feedback: Option<FeedbackForm>,
+    pub(super) composition: Composition,
     pub(super) source: Option<Source>,
     class: Class,
 }
@@ -83,7 +84,7 @@ impl System {
     /// The system of these P and Q.
     #[must_use]
     pub fn direct(p: Polynomial, q: Polynomial) -> Self {
-        Self::classified(p, q, None)
+        Self::classified(p, q, Composition::Direct)
     }
 
     /// The system of the open loop B, the feedback A with deg A < deg B, the memory R and the
@@ -93,7 +94,7 @@ impl System {
     #[must_use]
     pub fn feedback(open: Polynomial, gain: Polynomial, channel: Channel) -> Self {
         if gain.is_zero() {
-            return Self::classified(open, Polynomial::ZERO, None);
+            return Self::classified(open, Polynomial::ZERO, Composition::Direct);
         }
         let p = open.plus(&gain, -1.0);
         let q = if channel.memory == 0.0 {
@@ -106,7 +107,7 @@ impl System {
             gain,
             channel,
         };
-        Self::classified(p, q, Some(feedback))
+        Self::classified(p, q, feedback.into())
     }
 
     /// This system, the B and A of which come from the numbers of `source`: what rounding of their
@@ -127,11 +128,11 @@ impl System {
     }
 
     #[inline]
-    pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<FeedbackForm>) -> Self {
+    pub(super) fn classified(p: Polynomial, q: Polynomial, composition: Composition) -> Self {
         let mut system = Self {
             p,
             q,
-            feedback,
+            composition,
             source: None,
             class: Class::Retarded,
         };
@@ -139,10 +140,8 @@ impl System {
         system
     }
 
-    fn find_class(&self) -> Class {
-        if let Some(feedback) = self.late() {
-            return feedback.late_class();
-        }
+    /// The class that the degrees of P and Q and their highest coefficients make.
+    pub(super) fn class_by_degrees(&self) -> Class {
         let (n, m) = (self.p.degree(), self.q.degree());
         if !self.p.degree_known() || (m >= n && !self.q.degree_known()) {
             return Class::DegreeUnknown;
@@ -217,18 +216,16 @@ impl System {
         if self.q.is_zero() || !(vanish(&self.p) && vanish(&self.q)) {
             return None;
         }
-        // Only with latency P and Q do not say it all.
-        let feedback = self.late().map(FeedbackForm::divided_by_variable);
         Some(Self::classified(
             self.p.divided_by_variable(),
             self.q.divided_by_variable(),
-            feedback,
+            self.composition.divided_by_variable(),
         ))
     }
 
     /// P + Q: its zeros are the roots without delay.
     pub(super) fn without_delay(&self) -> Polynomial {
-        match &self.feedback {
+        match self.feedback_form() {
             Some(FeedbackForm { open, channel, .. }) => open.scaled(Rounded {
                 value: 1.0 - channel.memory,
                 error: 0.5 * f64::EPSILON,
@@ -248,7 +245,7 @@ impl System {
     /// P and Q on the line Re λ = `line`.
     #[inline]
     pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
-        match &self.feedback {
+        match self.feedback_form() {
             Some(FeedbackForm {
                 open,
                 gain,
@@ -264,12 +261,8 @@ impl System {
         self.on_line(0.0, Decay::NONE)
     }
 
-    /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
-    #[must_use]
-    pub fn root_bound(&self, tau: f64, line: f64) -> f64 {
-        if let Some(feedback) = self.late() {
-            return feedback.late_root_bound(tau, line);
-        }
+    /// A radius within which every root with Re λ ≥ `line` lies, from the coefficients of P and Q.
+    pub(super) fn bound_by_coefficients(&self, tau: f64, line: f64) -> f64 {
         let n = self.p.degree();
         let kappa = exp(-line * tau);
         let size = |p: &Polynomial, k: usize| {
@@ -297,7 +290,7 @@ impl System {
     pub fn jet(&self, tau: f64, lambda: Complex64) -> Jet {
         let difference = one_minus_exp(-tau * lambda);
         let delayed = 1.0 - difference;
-        let (kept, fed, part) = match &self.feedback {
+        let (kept, fed, part) = match self.feedback_form() {
             // D = (1 − R) B − Q(1 − E): short delays keep their digits.
             Some(FeedbackForm {
                 open,
@@ -333,7 +326,7 @@ impl System {
         let delayed = jet.delayed.l1_norm();
         // The argument λτ is rounded as well, and with it the phase of E.
         let turned = delayed * size * tau;
-        match &self.feedback {
+        match self.feedback_form() {
             Some(feedback) => {
                 let FeedbackForm {
                     open,
@@ -366,10 +359,7 @@ impl System {
                 apart(a).total_cmp(&apart(b))
             })
         };
-        let [p, q] = match self.late() {
-            Some(feedback) => feedback.polynomials(),
-            None => [&self.p, &self.q],
-        };
+        let [p, q] = self.polynomials();
         match (on_axis(p), on_axis(&q.without_open_leading())) {
             (Some(p), Some(q)) => (p.centre.im - q.centre.im).abs() <= p.radius + q.radius,
             _ => false,

@@ -1,5 +1,6 @@
 //! The unit of time in which a system is of the order of 1, and lines in other units.
 
+use super::composition::Composition;
 use super::line::DelayLine;
 use super::parts::FeedbackForm;
 use super::polynomial::Polynomial;
@@ -74,7 +75,7 @@ impl System {
         if self.source.is_some() {
             return 1.0;
         }
-        let feedback = self.feedback.as_ref();
+        let feedback = self.feedback_form();
         feedback.map_or(&self.p, |of| &of.open).time_unit()
     }
 
@@ -82,12 +83,12 @@ impl System {
     /// this one is a root λ·`unit` there.
     #[must_use]
     pub fn in_unit(&self, unit: f64) -> Self {
-        let n = match &self.feedback {
+        let n = match self.feedback_form() {
             Some(feedback) => feedback.open.degree(),
             None => self.p.degree().max(self.q.degree()),
         };
         let [p, q] = [&self.p, &self.q].map(|of| of.in_unit(unit, n));
-        let feedback = self.feedback.map(|of| FeedbackForm {
+        let feedback = self.feedback_form().map(|of| FeedbackForm {
             open: of.open.in_unit(unit, n),
             gain: of.gain.in_unit(unit, n),
             channel: Channel {
@@ -95,7 +96,11 @@ impl System {
                 ..of.channel
             },
         });
-        Self::classified(p, q, feedback)
+        Self::classified(
+            p,
+            q,
+            feedback.map_or(Composition::Direct, Composition::from),
+        )
     }
 }
 

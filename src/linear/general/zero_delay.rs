@@ -14,7 +14,6 @@ use super::turning::Turning;
 use super::zeros::Zeros;
 use crate::linear::count::MarginalTolerance;
 use crate::linear::crossing::{Crossing, Direction};
-use crate::linear::equation::Pair;
 use crate::linear::newton::divide;
 use crate::linear::rounded::Rounded;
 
@@ -133,7 +132,7 @@ impl DelayLine {
                 Direction::Left => false,
                 Direction::Touch => {
                     let z = Complex64::new(0.0, middle.im);
-                    let [_, p_slope, q, q_slope] = Pair::at(&system, z);
+                    let [_, p_slope, q, q_slope] = system.pair(z);
                     let drift = divide(q, p_slope + q_slope).re;
                     let above = self.modulus_sign_above(system, middle.im);
                     drift * above > 0.0
@@ -153,12 +152,8 @@ impl DelayLine {
             .iter()
             .filter(|c| c.omega > omega * (1.0 + 1e-9) && c.direction != Direction::Touch)
             .count();
-        let far = if system.late().is_some() {
-            1.0
-        } else {
-            let modulus = system.on_axis().modulus();
-            modulus.without_open_leading().leading().value
-        };
+        let modulus = system.on_axis().modulus();
+        let far = modulus.without_open_leading().leading().value;
         if higher % 2 == 0 { far } else { -far }
     }
 

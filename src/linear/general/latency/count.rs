@@ -192,8 +192,8 @@ impl RootCounter {
     /// system in feedback form; both forms agree.
     #[must_use]
     pub fn right_of_by(&self, form: Form, tau: f64, line: f64) -> RightOf {
-        match self.system().feedback {
-            Some(feedback) if tau > 0.0 => self.late_right_of(&feedback, form, tau, line),
+        match self.system().feedback_form() {
+            Some(feedback) if tau > 0.0 => self.right_of_by_form(feedback, form, tau, line),
             _ => self.right_of(tau, line),
         }
     }
@@ -201,7 +201,12 @@ impl RootCounter {
     /// The number of roots that [`RootCounter::right_of`] tells, with latency. The form that costs
     /// less is tried first, with frequencies to no more digits than a turn takes. Where that leaves
     /// the number open, all digits are used, and then the other form.
-    pub(in super::super) fn late(&self, feedback: &FeedbackForm, tau: f64, line: f64) -> RightOf {
+    pub(in super::super) fn late_right_of(
+        &self,
+        feedback: &FeedbackForm,
+        tau: f64,
+        line: f64,
+    ) -> RightOf {
         let on_line = match self.late_line(feedback, tau, line) {
             Ok(on_line) => on_line,
             Err(why) => return why.into(),
@@ -220,7 +225,13 @@ impl RootCounter {
             .unwrap_or(RightOf::Undecided)
     }
 
-    fn late_right_of(&self, feedback: &FeedbackForm, form: Form, tau: f64, line: f64) -> RightOf {
+    fn right_of_by_form(
+        &self,
+        feedback: &FeedbackForm,
+        form: Form,
+        tau: f64,
+        line: f64,
+    ) -> RightOf {
         match self.late_line(feedback, tau, line) {
             Ok(on_line) => self.by_form(&on_line, form, (on_line.window(), 0.0)),
             Err(why) => why.into(),
@@ -240,7 +251,9 @@ impl RootCounter {
     /// Equation (7) on the imaginary axis with latency: for every delay, or with a given delay for
     /// every latency.
     pub(in super::super) fn late_unstable(&self, form: Form, tau: f64) -> Option<Turning> {
-        let on_line = self.late_line(self.system().late()?, tau, 0.0).ok()?;
+        let on_line = self
+            .late_line(self.system().feedback_form()?, tau, 0.0)
+            .ok()?;
         let mut turns = Vec::new();
         let to = (on_line.window(), 0.0);
         let without_turns = self.turns_of(&on_line, form, to, |turn| {

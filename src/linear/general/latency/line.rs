@@ -66,7 +66,7 @@ impl DelayLine {
 
     /// Finds the crossings; false where the phase of one may be 0 as well as 2π.
     fn find_late_crossings(&mut self, late: &System, tau: f64) -> bool {
-        let on_line = late.late().and_then(|f| OnLine::new(f, tau, 0.0));
+        let on_line = late.feedback_form().and_then(|f| OnLine::new(f, tau, 0.0));
         let mut switches = Switches::default();
         let found = on_line.as_ref().is_some_and(|on_line| {
             let wave = on_line.wave(Form::Latency);

@@ -25,50 +25,21 @@ mod wave;
 mod window;
 
 use super::parts::{Angle, FeedbackForm};
-use super::polynomial::Polynomial;
 use super::switches::Switches;
 use super::system::{Class, System};
-use crate::model::Channel;
 pub(super) use budget::{Budget, MOST_STEPS_OF_A_CELL};
 use on_line::OnLine;
 
 pub use on_line::Form;
 
 impl System {
-    /// The feedback, where it comes late.
-    pub(super) fn late(&self) -> Option<&FeedbackForm> {
-        self.feedback.as_ref().filter(|f| f.channel.latency > 0.0)
-    }
-
-    /// The latency δ; 0 where there is none.
-    #[must_use]
-    pub fn latency(&self) -> f64 {
-        self.late().map_or(0.0, |f| f.channel.latency)
-    }
-
     /// A frequency beyond which no root lies on Re λ = `line` at the delay `tau` ≥ 0, for these
     /// gains and smaller ones. None where roots accumulate there or right of it, and for systems
     /// that are not in feedback form.
     pub(in crate::linear) fn highest_on_line(&self, tau: f64, line: f64) -> Option<f64> {
-        let on_line = OnLine::new(self.feedback.as_ref()?, tau, line)?;
+        let on_line = OnLine::new(self.feedback_form()?, tau, line)?;
         let apart = on_line.right_of_essential()?;
         apart.then(|| on_line.window().to)
-    }
-
-    /// This system with the latency `latency` ≥ 0; none where it is not in feedback form.
-    #[must_use]
-    pub fn with_latency(&self, latency: f64) -> Option<Self> {
-        if self.uncontrolled() {
-            return Some(*self);
-        }
-        let FeedbackForm {
-            open,
-            gain,
-            channel,
-        } = self.feedback?;
-        let mut late = Self::feedback(open, gain, Channel { latency, ..channel });
-        late.source = self.source;
-        Some(late)
     }
 }
 
@@ -98,12 +69,6 @@ impl FeedbackForm {
         }
     }
 
-    /// Finds where (3) of [`on_line`] changes its sign on the imaginary axis; false where that is
-    /// open.
-    pub(super) fn late_switches(&self, switches: &mut Switches) -> bool {
-        self.switches_on(0.0, 0.0, switches)
-    }
-
     /// Finds where (3) of [`on_line`] changes its sign on any line at the delay `tau`; false where
     /// that is open.
     pub(super) fn switches_on(&self, tau: f64, line: f64, switches: &mut Switches) -> bool {
@@ -117,10 +82,5 @@ impl FeedbackForm {
     /// The argument of −P Q* at iω, P and Q being 𝒫 and 𝒬 of (1) in [`on_line`].
     pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<Angle> {
         OnLine::new(self, 0.0, 0.0)?.phase(Form::Delay, omega, error)
-    }
-
-    /// B and A; the rest of D depends on λ by exponentials alone.
-    pub(super) fn polynomials(&self) -> [&Polynomial; 2] {
-        [&self.open, &self.gain]
     }
 }

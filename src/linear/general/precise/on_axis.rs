@@ -127,7 +127,7 @@ impl Swinging {
 impl OnAxis {
     /// For delays: the line of `system`.
     pub(super) fn of_delays(system: &System) -> Self {
-        let Some(feedback) = &system.feedback else {
+        let Some(feedback) = system.feedback_form() else {
             let [p, q] = [&system.p, &system.q].map(Precise::of);
             return Self {
                 u: Swinging::still(p.minus(&q)),
@@ -147,7 +147,7 @@ impl OnAxis {
 
     /// For latencies at the delay `tau`; none where `system` is not in feedback form.
     pub(super) fn of_latencies(system: &System, tau: f64) -> Option<Self> {
-        let feedback = system.feedback.as_ref()?;
+        let feedback = system.feedback_form()?;
         let [b, a] = open_and_gain(system, feedback);
         let remembered = b.scaled(Number::of(-feedback.channel.memory));
         Some(Self {
