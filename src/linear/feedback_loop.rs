@@ -83,6 +83,18 @@ pub struct PerGroup {
     pub a_n: Complex64,
 }
 
+impl PerGroup {
+    /// Derivatives that are not known: NaN.
+    pub const UNKNOWN: Self = {
+        let unknown = Complex64::new(f64::NAN, f64::NAN);
+        Self {
+            b: unknown,
+            a_v: unknown,
+            a_n: unknown,
+        }
+    };
+}
+
 /// Degrees here are at most 6.
 const LOW: &str = "a low degree";
 

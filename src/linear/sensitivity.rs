@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use super::characteristic::Jet;
+use super::feedback_loop::PerGroup;
 use crate::model::Groups;
 
 /// Derivatives of a root λ with respect to the dimensionless groups and the delay. Their real parts
@@ -30,11 +31,23 @@ impl Sensitivity {
     #[must_use]
     pub fn of(groups: Groups, tau: f64, lambda: Complex64) -> Self {
         let jet = Jet::at(groups, tau, lambda);
+        let per = PerGroup {
+            b: lambda - groups.a_v * jet.difference,
+            a_v: -(groups.b + lambda) * jet.difference,
+            a_n: -jet.difference,
+        };
+        Self::by_derivatives(&jet, per, lambda)
+    }
+
+    /// At the root `lambda` of an equation with the jet `jet` there, from the derivatives of D with
+    /// respect to the groups.
+    #[must_use]
+    pub fn by_derivatives(jet: &Jet, per: PerGroup, lambda: Complex64) -> Self {
         let per_slope = -1.0 / jet.first;
         Self {
-            b: (lambda - groups.a_v * jet.difference) * per_slope,
-            a_v: -(groups.b + lambda) * jet.difference * per_slope,
-            a_n: -jet.difference * per_slope,
+            b: per.b * per_slope,
+            a_v: per.a_v * per_slope,
+            a_n: per.a_n * per_slope,
             tau: -jet.feedback * lambda * jet.delayed * per_slope,
         }
     }

@@ -42,12 +42,9 @@ impl Linear {
     /// The system; the letter's own in feedback form.
     #[must_use]
     pub fn system(&self) -> System {
-        match self {
-            Self::Letter(groups) => {
-                FeedbackLoop::of_letter(*groups, Channel::default(), Lags::default()).system()
-            }
-            Self::General(system) => **system,
-        }
+        let of_groups =
+            |groups| FeedbackLoop::of_letter(groups, Channel::default(), Lags::default());
+        self.by_kind(|groups| of_groups(groups).system(), |system| *system)
     }
 
     /// Its roots, found within a bound of work. Once `stop` is set, answers come soon but are
@@ -64,9 +61,20 @@ impl Linear {
     }
 
     fn roots_by(&self, counter: impl Fn(&System) -> RootCounter) -> Box<dyn Roots> {
+        self.by_kind(
+            |groups| Box::new(LetterRoots::new(groups)) as Box<dyn Roots>,
+            |system| Box::new(GeneralRoots::new(counter(system))),
+        )
+    }
+
+    fn by_kind<T>(
+        &self,
+        letter: impl FnOnce(Groups) -> T,
+        general: impl FnOnce(&System) -> T,
+    ) -> T {
         match self {
-            Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
-            Self::General(system) => Box::new(GeneralRoots::new(counter(system))),
+            Self::Letter(groups) => letter(*groups),
+            Self::General(system) => general(system),
         }
     }
 }

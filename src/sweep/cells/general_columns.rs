@@ -2,14 +2,17 @@
 
 use std::ops::Range;
 
+use num_complex::Complex64;
+
 use super::buffers::TileBuffers;
 use super::line::Places;
 use super::root_columns::{Line, RootColumns};
 use crate::linear::MarginalTolerance;
-use crate::linear::feedback_loop::FeedbackLoop;
+use crate::linear::feedback_loop::{FeedbackLoop, PerGroup};
 use crate::linear::general::rightmost::{beside_accumulation, nothing_beyond_accumulation};
 use crate::linear::general::{Class, DelayLine, Reason, RootCounter, System};
 use crate::linear::row::Delays;
+use crate::linear::sensitivity::Sensitivity;
 use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
 use crate::model::stop::Stop;
@@ -159,6 +162,13 @@ impl GeneralColumns {
             None => line.system.time_unit(),
         };
         let scaled = (unit != 1.0).then(|| counter.in_unit(unit));
+        let equation = scaled.as_ref().unwrap_or(&counter);
+        // Without a loop, derivatives with respect to the groups are NaN.
+        let sensitivity = |tau: f64, lambda: Complex64| {
+            let jet = equation.system().jet(tau, lambda);
+            let per = line.of_loop.map(|of| of.per_group(lambda, jet.difference));
+            Sensitivity::by_derivatives(&jet, per.unwrap_or(PerGroup::UNKNOWN), lambda)
+        };
         let mut begin = 0;
         while begin < known {
             let kind = self.no_rightmost[begin];
@@ -171,8 +181,8 @@ impl GeneralColumns {
                 self.fill_accumulations(line, run, buffers);
             } else {
                 let part = Line {
-                    equation: scaled.as_ref().unwrap_or(&counter),
-                    of_loop: line.of_loop,
+                    equation,
+                    sensitivity,
                     time_unit: line.time_unit * unit,
                     unit,
                     per_parameter: line.per_parameter,

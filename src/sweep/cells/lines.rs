@@ -61,13 +61,11 @@ impl<'p> Lines<'p> {
     pub(super) fn model(&mut self) -> Result<(Linear, f64), NoAnswer> {
         if !self.of_letter {
             let model = self.setting.linear_in(&mut self.evaluation)?;
-            if matches!(model.0, Linear::General(_)) {
-                // The rates of its parameters are needed nevertheless.
-                if self.setting.system().is_none() {
-                    self.groups()?;
-                }
-                return Ok(model);
+            // The rates of its parameters are needed nevertheless.
+            if self.setting.system().is_none() {
+                self.groups()?;
             }
+            return Ok(model);
         }
         let (groups, time_unit) = self.groups()?;
         Ok((Linear::Letter(groups), time_unit))

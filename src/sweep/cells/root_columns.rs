@@ -5,8 +5,6 @@ use num_complex::Complex64;
 use super::buffers::Column;
 use super::line::Places;
 use crate::linear::equation::Equation;
-use crate::linear::feedback_loop::{FeedbackLoop, PerGroup};
-use crate::linear::general::RootCounter;
 use crate::linear::general::rightmost::scaled_margin;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
@@ -14,49 +12,11 @@ use crate::model::Groups;
 use crate::setting::field::Field;
 use crate::setting::source::{OfRoots, Slope, Source};
 
-/// An equation with roots that depend on the groups.
-pub(super) trait Moving: Equation {
-    /// What is known of this dependence.
-    type Loop: Copy;
-
-    /// The sensitivity of the root `lambda` at the delay `tau`.
-    fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity;
-}
-
-impl Moving for Groups {
-    type Loop = ();
-
-    fn sensitivity(self, (): (), tau: f64, lambda: Complex64) -> Sensitivity {
-        Sensitivity::of(self, tau, lambda)
-    }
-}
-
-impl<'l> Moving for &'l RootCounter {
-    /// Without a loop, derivatives with respect to the groups are NaN.
-    type Loop = Option<&'l FeedbackLoop>;
-
-    fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity {
-        let jet = self.jet(tau, lambda);
-        let per_slope = -1.0 / jet.first;
-        let unknown = Complex64::new(f64::NAN, f64::NAN);
-        let per = of_loop.map(|of| of.per_group(lambda, jet.difference));
-        let of = |derivative: fn(&PerGroup) -> Complex64| {
-            per.as_ref()
-                .map_or(unknown, |per| derivative(per) * per_slope)
-        };
-        Sensitivity {
-            b: of(|per| per.b),
-            a_v: of(|per| per.a_v),
-            a_n: of(|per| per.a_n),
-            tau: -jet.feedback * lambda * jet.delayed * per_slope,
-        }
-    }
-}
-
 /// A line of cells, or a part of it.
-pub(super) struct Line<'a, E: Moving> {
+pub(super) struct Line<'a, E, S> {
     pub equation: E,
-    pub of_loop: E::Loop,
+    /// The sensitivity of a root at a delay, of the equation.
+    pub sensitivity: S,
     /// The unit of time of the equation.
     pub time_unit: f64,
     /// That unit in the one to which margins refer, √(M/κ) or a system's own.
@@ -96,9 +56,9 @@ impl RootColumns {
     ///
     /// `counts` are the numbers of unstable roots. The flags of root tracking are added to
     /// `status`.
-    pub(super) fn fill<E: Moving>(
+    pub(super) fn fill<E: Equation>(
         &mut self,
-        line: &Line<E>,
+        line: &Line<E, impl Fn(f64, Complex64) -> Sensitivity>,
         counts: &[u16],
         status: &mut [u8],
         columns: &mut [Column],
@@ -110,8 +70,7 @@ impl RootColumns {
             let slopes = match cell.roots.first() {
                 Some(root) if sensitive => {
                     let tau = line.delays[i] / line.time_unit;
-                    let of_loop = line.of_loop;
-                    slopes(line, &line.equation.sensitivity(of_loop, tau, root.lambda))
+                    slopes(line, &(line.sensitivity)(tau, root.lambda))
                 }
                 _ => [f64::NAN; 4],
             };
@@ -187,7 +146,7 @@ pub fn relaxation_time(abscissa: f64) -> f64 {
 /// is Re λ/T with T = √(M/κ); the chain rule goes over τ/T and the groups, each proportional to its
 /// parameter.
 #[inline]
-fn slopes<E: Moving>(line: &Line<E>, sensitivity: &Sensitivity) -> [f64; 4] {
+fn slopes<E, S>(line: &Line<E, S>, sensitivity: &Sensitivity) -> [f64; 4] {
     let (unit, per) = (line.time_unit, line.per_parameter);
     let mut slopes = [0.0; 4];
     for (slope, derivative) in [

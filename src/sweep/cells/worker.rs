@@ -18,6 +18,7 @@ use crate::linear::Crossings;
 use crate::linear::general::{Reason, System};
 use crate::linear::line::Linear;
 use crate::linear::row::Delays;
+use crate::linear::sensitivity::Sensitivity;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::model::stop::Stop;
@@ -226,12 +227,12 @@ impl<'p> Worker<'p> {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
             one.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
-            let Ok((Linear::General(system), time_unit)) = self.lines.model() else {
+            let Ok((linear, time_unit)) = self.lines.model() else {
                 self.refuse(place, 1);
                 continue;
             };
             let line = GeneralLine {
-                system: &system,
+                system: &linear.system(),
                 of_loop: None,
                 time_unit,
                 stiffness_ratio: f64::NAN,
@@ -325,7 +326,7 @@ impl<'p> Worker<'p> {
         };
         let line = Line {
             equation: groups,
-            of_loop: (),
+            sensitivity: |tau, lambda| Sensitivity::of(groups, tau, lambda),
             time_unit,
             unit: 1.0,
             per_parameter: self.lines.groups_per_parameter(),
