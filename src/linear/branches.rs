@@ -15,6 +15,7 @@ use super::newton::divide;
 use super::roots::narrowed;
 use crate::model::Groups;
 use crate::model::elementary::{arg, exp, ln};
+use crate::model::groups::feedback_coefficients;
 
 /// Newton steps on the logarithmic equation before a start is handed over.
 const STEPS: u32 = 4;
@@ -39,14 +40,18 @@ pub(super) struct LetterPair {
 
 impl LetterPair {
     pub(super) fn new(groups: Groups) -> Self {
-        let Groups { b, a_v, a_n } = groups;
-        let q0 = a_n + a_v * b;
+        let [q0, q1] = feedback_coefficients(groups);
         Self {
             p0: 1.0 - q0,
-            p1: b - a_v,
+            p1: groups.b - q1,
             q0,
-            q1: a_v,
+            q1,
         }
+    }
+
+    /// The coefficients of P and of Q, the constants first.
+    pub(super) fn coefficients(&self) -> ([f64; 3], [f64; 2]) {
+        ([self.p0, self.p1, 1.0], [self.q0, self.q1])
     }
 
     /// The zeros of P, and those of B.

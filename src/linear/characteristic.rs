@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use crate::model::Groups;
 use crate::model::elementary::{exp, expm1, sincos};
+use crate::model::groups::{feedback, open_loop};
 
 /// D and what Newton's method and the implicit-function theorem need of it, at one λ.
 ///
@@ -35,13 +36,13 @@ impl Jet {
     #[inline]
     #[must_use]
     pub fn at(groups: Groups, tau: f64, lambda: Complex64) -> Self {
-        let Groups { b, a_v, a_n } = groups;
+        let Groups { b, a_v, .. } = groups;
         let difference = one_minus_exp(-tau * lambda);
         let delayed = 1.0 - difference;
-        let feedback = Complex64::new(a_v.mul_add(b + lambda.re, a_n), a_v * lambda.im);
+        let feedback = Complex64::new(groups.feedback(b + lambda.re), a_v * lambda.im);
         let memory = feedback * delayed * tau;
         Self {
-            value: lambda * (lambda + b) + 1.0 - feedback * difference,
+            value: open_loop(b, lambda) - feedback * difference,
             first: 2.0 * lambda + b - a_v * difference - memory,
             second: 2.0 - 2.0 * a_v * tau * delayed + memory * tau,
             delayed,
@@ -80,6 +81,12 @@ pub(crate) fn one_minus_exp(z: Complex64) -> Complex64 {
     )
 }
 
+/// e^(−λδ) for a delay or latency δ.
+#[inline]
+pub(crate) fn late(delta: f64, lambda: Complex64) -> Complex64 {
+    1.0 - one_minus_exp(-delta * lambda)
+}
+
 /// D(λ) of the letter's Eq. (3), dimensionless; see [`Jet`].
 #[must_use]
 pub fn characteristic(groups: Groups, tau: f64, lambda: Complex64) -> Complex64 {
@@ -104,7 +111,7 @@ pub fn root_bound(groups: Groups, tau: f64, line: f64) -> f64 {
     let Groups { b, a_v, a_n } = groups;
     let largest = 1.0 + exp(-line * tau);
     let linear = b.abs() + largest * a_v.abs();
-    let constant = 1.0 + largest * (b * a_v + a_n).abs();
+    let constant = 1.0 + largest * feedback(a_n, a_v, b).abs();
     0.5 * (linear + (linear * linear + 4.0 * constant).sqrt())
 }
 

@@ -74,8 +74,7 @@ impl Equation for Groups {
     }
 
     fn eigenvalues(self, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
-        let Groups { b, a_v, a_n } = self;
-        let q0 = a_n + a_v * b;
-        eigenvalues(&[1.0 - q0, b - a_v, 1.0], &[q0, a_v], tau, nodes)
+        let (p, q) = LetterPair::new(self).coefficients();
+        eigenvalues(&p, &q, tau, nodes)
     }
 }

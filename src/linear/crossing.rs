@@ -398,10 +398,10 @@ impl Arms {
     /// Equation (2) at x = 1 + y. Where x is not positive the result is meaningless.
     #[inline(always)]
     fn new(groups: Groups, (y, y_error): (f64x2, f64x2), (x, x_error): (f64x2, f64x2)) -> Self {
-        let Groups { b, a_v, a_n } = groups;
+        let Groups { b, a_v, .. } = groups;
         let omega = x.sqrt();
         let (b_r, b_i) = (-y, b * omega);
-        let (a_r, a_i) = (f64x2::splat(a_v.mul_add(b, a_n)), a_v * omega);
+        let (a_r, a_i) = (f64x2::splat(groups.feedback(b)), a_v * omega);
         let a_norm_sqr = a_r * a_r + a_i * a_i;
         let sine = a_r * b_i - a_i * b_r;
         let cosine = a_norm_sqr - (a_r * b_r + a_i * b_i);

@@ -14,8 +14,9 @@
 
 use num_complex::Complex64;
 
-use super::characteristic::one_minus_exp;
+use super::characteristic::late;
 use super::general::{Polynomial, Source, System};
+use crate::model::groups::open_loop_coefficients;
 use crate::model::{Channel, Groups, Lags, StateGroups};
 
 /// The block on its spring with friction: (3) for the letter's law, (4) for one with a state.
@@ -141,7 +142,7 @@ impl Friction {
     #[must_use]
     pub fn of_slope(b: f64) -> Self {
         Self {
-            open: polynomial(&[1.0, b, 1.0]),
+            open: polynomial(&open_loop_coefficients(b)),
             load: polynomial(&[1.0]),
             velocity: polynomial(&[b, 1.0]),
             slope: Some(b),
@@ -203,7 +204,7 @@ impl FeedbackLoop {
         let remembered = 1.0 - memory * (1.0 - difference);
         let acting = match latency {
             0.0 => difference,
-            latency => difference * (1.0 - one_minus_exp(-latency * lambda)),
+            latency => difference * late(latency, lambda),
         };
         // ∂B/∂b = λ L_a L_v L_s and ∂V/∂b = L_a.
         let of_slope = || {

@@ -21,6 +21,7 @@ use super::crossing::Crossings;
 use super::roots::bisect;
 use crate::model::Groups;
 use crate::model::elementary::arg;
+use crate::model::groups::feedback;
 
 /// The kinds of pure control whose lobes end at a finite slope of the friction law.
 ///
@@ -110,7 +111,7 @@ fn phase_and_derivative(groups: Groups, omega: f64) -> (f64, f64) {
     let i = Complex64::i();
     let lambda = i * omega;
     let open_loop = lambda * lambda + b * lambda + 1.0;
-    let feedback = a_n + a_v * (b + lambda);
+    let feedback = feedback(a_n, a_v, b + lambda);
     let (d_open_loop, d_feedback) = (i * (2.0 * lambda + b), i * a_v);
     let theta = (-arg((feedback - open_loop) / feedback)).rem_euclid(TAU);
     let derivative = ((d_open_loop * feedback - open_loop * d_feedback)

@@ -16,7 +16,7 @@
 //!   imports libm
 //! - `error`: errors of parameters out of range, and the format of numbers in messages
 //! - `feedback`: the feedback of the elongation: gains, delay, memory, latency, lags
-//! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone
+//! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone; B and A of D
 //! - `known_cases`: cases with known answers, for tests and benches alike
 //! - `law`: laws of kinetic friction, one file each: value, slope, their bounds, series
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
@@ -29,7 +29,7 @@
 pub mod elementary;
 mod error;
 mod feedback;
-mod groups;
+pub mod groups;
 pub mod known_cases;
 pub mod law;
 mod oscillator;

@@ -8,6 +8,7 @@ use crate::linear::curves::{Vertex, Window};
 use crate::linear::plane::{Band, Local, Plane, Value};
 use crate::model::Groups;
 use crate::model::elementary::{exp, power};
+use crate::model::groups::feedback;
 use crate::model::stop::Stop;
 
 /// Step of the central difference in p, over the width of the window.
@@ -48,7 +49,7 @@ impl LetterPlane<'_> {
         let (Groups { b, a_v, a_n }, unit) = self.groups(p);
         let line = -sigma * unit;
         let kappa = exp(sigma * tau);
-        let q0 = a_n + a_v * (b + line);
+        let q0 = feedback(a_n, a_v, b + line);
         let c = line * line + b * line + 1.0 - q0;
         let damping = 2.0 * line + b - a_v;
         let half = 0.5 * (damping * damping - power(kappa * a_v, 2)) - c;

@@ -17,6 +17,7 @@ use std::ops::{Add, Mul, Sub};
 use num_complex::Complex64;
 
 use crate::model::elementary::{arg, exp, expm1, ln, sincos};
+use crate::model::groups::Ring;
 
 /// The rounding of one operation below, of its largest term: a generous count.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -156,6 +157,18 @@ impl<const V: usize> Affine<V> {
         // A zonotope's sides are along its parts: one of their normals tells, or the way to it.
         let normal = |g: &Complex64| Complex64::new(-g.im, g.re);
         !(beyond(self.centre) || self.part.iter().any(|g| beyond(normal(g))))
+    }
+}
+
+impl<const V: usize> Ring for Affine<V> {
+    #[inline]
+    fn plus_one(self) -> Self {
+        self + Self::constant(1.0.into())
+    }
+
+    #[inline]
+    fn scaled(self, by: f64) -> Self {
+        self.scaled(by)
     }
 }
 

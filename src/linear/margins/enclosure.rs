@@ -17,6 +17,7 @@ use num_complex::Complex64;
 
 use super::affine::Affine;
 use super::beyond::Beyond;
+use crate::model::groups::{feedback, open_loop};
 use crate::model::{Control, FrictionLaw, Groups, Oscillator, SlidingPoint};
 
 /// What (1) depends on.
@@ -64,10 +65,11 @@ impl<const V: usize> Point<V> {
             lambda, factor, b, ..
         } = *self;
         let one = Affine::constant(1.0.into());
+        let mut open = open_loop(b, lambda);
         let Some(beyond) = &self.beyond else {
             return Parts {
-                open: lambda * (lambda + b) + one,
-                feedback: factor * (self.a_n + (b + lambda).scaled(self.a_v)),
+                open,
+                feedback: factor * feedback(self.a_n, self.a_v, b + lambda),
                 memory: 0.0,
                 late: None,
             };
@@ -77,7 +79,6 @@ impl<const V: usize> Point<V> {
             0.0 => number,
             time => number * lag(time),
         };
-        let mut open = lambda * (lambda + b) + one;
         for time in beyond.lags.times() {
             open = passing(open, time);
         }

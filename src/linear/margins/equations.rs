@@ -26,6 +26,7 @@ use super::zeros::Wave;
 use crate::linear::characteristic::{Jet, root_bound};
 use crate::model::Groups;
 use crate::model::elementary::exp;
+use crate::model::groups::{feedback, open_loop};
 
 /// A setting's equations in ω: those of the letter here, those beyond it in
 /// [`beyond`](super::beyond).
@@ -118,7 +119,7 @@ impl Line {
     /// A.
     fn feedback(&self) -> Complex {
         let Groups { b, a_v, a_n } = self.groups;
-        Complex::of([a_n + a_v * (b - self.decay), 0.0], [0.0, a_v])
+        Complex::of([feedback(a_n, a_v, b - self.decay), 0.0], [0.0, a_v])
     }
 
     /// B.
@@ -162,7 +163,7 @@ impl Line {
             lambda,
             difference: jet.difference,
             feedback: jet.feedback,
-            open_loop: lambda * (lambda + self.groups.b) + 1.0,
+            open_loop: open_loop(self.groups.b, lambda),
         }
     }
 }
@@ -210,7 +211,7 @@ impl OnLine for Line {
         let Groups { a_v, a_n, .. } = self.groups;
         let at = self.at(omega);
         let lambda = at.lambda;
-        let n = lambda * lambda + 1.0 - (a_n + a_v * lambda) * at.difference;
+        let n = lambda * lambda + 1.0 - feedback(a_n, a_v, lambda) * at.difference;
         let m = lambda - a_v * at.difference;
         -(n * m.conj()).re / m.norm_sqr()
     }
@@ -261,7 +262,7 @@ impl OnLine for Line {
     /// On the imaginary axis P_r = c − a_n x has to be positive, c = a_n + a_v b.
     fn highest_with_gain(&self) -> f64 {
         let Groups { b, a_v, a_n } = self.groups;
-        let c = a_n + a_v * b;
+        let c = feedback(a_n, a_v, b);
         match self.decay {
             0.0 if a_n > 0.0 => (c / a_n).max(0.0).sqrt(),
             0.0 if a_n == 0.0 && c <= 0.0 => 0.0,

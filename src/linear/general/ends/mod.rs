@@ -27,9 +27,10 @@ use super::polynomial::Polynomial;
 use super::right_of::RootCounter;
 use super::system::System;
 use super::turning::RightOf;
-use crate::linear::characteristic::one_minus_exp;
+use crate::linear::characteristic::{late, one_minus_exp};
 use crate::linear::lobes::LobeControl;
 use crate::model::Channel;
+use crate::model::groups::{open_loop, open_loop_coefficients};
 
 /// Longest steps along the memory and the latency.
 const MEMORY_STEP: f64 = 0.01;
@@ -247,17 +248,13 @@ impl Problem {
         let (b, gain, tau) = (y[0], y[1], y[2]);
         let latency = self.latency.unwrap_or(y[3]);
         let lambda = Complex64::new(0.0, omega);
-        let (late, shape, slope) = match self.control {
-            LobeControl::Velocity => (one_minus_exp(-latency * lambda), b + lambda, 1.0),
-            LobeControl::PositiveLoad => {
-                let shape = Complex64::new(1.0, 0.0);
-                (one_minus_exp(-latency * lambda), shape, 0.0)
-            }
+        let (shape, slope) = match self.control {
+            LobeControl::Velocity => (b + lambda, 1.0),
+            LobeControl::PositiveLoad => (Complex64::new(1.0, 0.0), 0.0),
         };
-        let late = 1.0 - late;
-        let difference = one_minus_exp(-tau * lambda);
+        let (late, difference) = (late(latency, lambda), one_minus_exp(-tau * lambda));
         let echo = 1.0 - difference;
-        let (open, open_slope) = (lambda * (lambda + b) + 1.0, 2.0 * lambda + b);
+        let (open, open_slope) = (open_loop(b, lambda), 2.0 * lambda + b);
         let kept = 1.0 - self.memory * echo;
         let value = open * kept - gain * shape * late * difference;
         let fed = (slope - latency * shape) * difference + tau * shape * echo;
@@ -369,7 +366,10 @@ impl Problem {
             LobeControl::Velocity => [end.gain * end.b, end.gain],
             LobeControl::PositiveLoad => [end.gain, 0.0],
         };
-        let polynomials = [Polynomial::new(&[1.0, end.b, 1.0]), Polynomial::new(&shape)];
+        let polynomials = [
+            Polynomial::new(&open_loop_coefficients(end.b)),
+            Polynomial::new(&shape),
+        ];
         let [Ok(open), Ok(gain)] = polynomials else {
             return false;
         };

@@ -1,6 +1,7 @@
 //! What B and A of the controlled oscillator are made of.
 
 use super::polynomial::Precise;
+use crate::model::groups::open_loop_coefficients;
 use crate::model::{Groups, Lags};
 
 /// The numbers that B and A come from:
@@ -34,7 +35,7 @@ impl Source {
         let by_load = velocity.product(&Precise::new([a_n]));
         let by_velocity = load.product(&Precise::new([b, 1.0]));
         [
-            Precise::new([1.0, b, 1.0]).product(&lags),
+            Precise::new(open_loop_coefficients(b)).product(&lags),
             by_velocity.product(&Precise::new([a_v])).plus(&by_load),
         ]
     }

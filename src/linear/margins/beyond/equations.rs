@@ -28,7 +28,7 @@ use super::super::equations::OnLine;
 use super::super::setting::Setting;
 use super::feedback::Beyond;
 use super::sum::{Part, Sum, Terms, conjugate};
-use crate::linear::characteristic::one_minus_exp;
+use crate::linear::characteristic::{late, one_minus_exp};
 use crate::linear::feedback_loop::{polynomial, times};
 use crate::linear::general::{Polynomial, System};
 use crate::linear::rounded::Rounded;
@@ -126,7 +126,7 @@ impl Equations {
         let difference = one_minus_exp(-self.setting.tau * lambda);
         let memory = self.beyond.channel.memory;
         let kept = 1.0 - memory + memory * difference;
-        let passed = self.beyond.late(lambda) * difference;
+        let passed = late(self.beyond.channel.latency, lambda) * difference;
         Values {
             lambda,
             open: self.open.value(lambda) * kept,

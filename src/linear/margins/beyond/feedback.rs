@@ -1,9 +1,6 @@
 //! What feedback has beyond the letter's own, and which settings of it are stable.
 
-use num_complex::Complex64;
-
 use crate::linear::MarginalTolerance;
-use crate::linear::characteristic::one_minus_exp;
 use crate::linear::feedback_loop::{FeedbackLoop, LagPolynomials};
 use crate::linear::general::{DelayLine, RightOf, RootCounter};
 use crate::linear::stable_delays::StableInterval;
@@ -64,10 +61,5 @@ impl Beyond {
             0.0 => f64::INFINITY,
             memory => -ln(memory.abs()) / decay,
         }
-    }
-
-    /// e^(−λδ).
-    pub(super) fn late(&self, lambda: Complex64) -> Complex64 {
-        1.0 - one_minus_exp(-self.channel.latency * lambda)
     }
 }
