@@ -10,6 +10,24 @@ use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
 use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 
+/// A setting of the letter's own feedback, or of one with more.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "made once a cell")]
+enum Of {
+    Letter(Case<margins::Setting>),
+    Beyond(Case),
+}
+
+/// An answer about the case of an [`Of`], whichever it is.
+macro_rules! of {
+    ($of:expr, $case:ident => $answer:expr) => {
+        match $of {
+            Of::Letter($case) => $answer,
+            Of::Beyond($case) => $answer,
+        }
+    };
+}
+
 /// A setting and the decay required of it.
 ///
 /// ```
@@ -27,7 +45,7 @@ use crate::setting::values::Setting;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Around {
-    of: Case,
+    of: Of,
     /// The system and the delay, physical, where the delay alone decides on stability beyond the
     /// letter.
     line: Option<(System, f64)>,
@@ -61,7 +79,10 @@ impl Around {
         let beyond = (!setting.is_of_letter()).then_some(Beyond { channel, lags });
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
-            of: beyond.map_or_else(|| of.case(), |beyond| Case::beyond(of, beyond)),
+            of: beyond.map_or_else(
+                || Of::Letter(of.case()),
+                |beyond| Of::Beyond(Case::beyond(of, beyond)),
+            ),
             line: on_axis.map(|beyond| {
                 (
                     beyond.of_groups(groups).system(),
@@ -78,25 +99,25 @@ impl Around {
 
     /// The same, but once `stop` is set margins are told soon, and mean nothing.
     #[must_use]
-    pub fn heeding(self, stop: &Stop) -> Self {
-        let of = self.of.heeding(stop);
-        Self { of, ..self }
+    pub fn heeding(mut self, stop: &Stop) -> Self {
+        of!(&mut self.of, case => case.heed(stop));
+        self
     }
 
     /// Whether the setting is stable, or decays as required, beyond doubt.
     #[must_use]
     pub fn stable(&self) -> bool {
-        self.of.stable()
+        of!(&self.of, case => case.stable())
     }
 
     /// The factors of both gains at which stability, or the required decay, is lost.
     pub fn gain(&self, search: &mut Margins) -> Limits {
-        search.gain(&self.of)
+        of!(&self.of, case => search.gain(case))
     }
 
     /// The phase margin in radians, the latency margin in units of time.
     pub fn of_loop(&self, search: &mut Margins) -> LoopMargins {
-        let found = search.of_loop(&self.of);
+        let found = of!(&self.of, case => search.of_loop(case));
         LoopMargins {
             latency: found.latency * self.oscillator.time_unit(),
             ..found
@@ -106,17 +127,17 @@ impl Around {
     /// Whether feedback has more than the letter's own.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
-        self.of.is_beyond()
+        matches!(self.of, Of::Beyond(_))
     }
 
     /// The latency margin alone, in units of time.
     pub fn latency(&self, search: &mut Margins) -> f64 {
-        search.latency(&self.of) * self.oscillator.time_unit()
+        of!(&self.of, case => search.latency(case)) * self.oscillator.time_unit()
     }
 
     /// The phase margin alone.
     pub fn phase(&self, search: &mut Margins) -> f64 {
-        search.phase(&self.of)
+        of!(&self.of, case => search.phase(case))
     }
 
     /// The delays at which stability is lost.
@@ -124,7 +145,7 @@ impl Around {
     pub fn delay(&self) -> Limits {
         let unit = self.oscillator.time_unit();
         let Some((system, tau)) = &self.line else {
-            return scaled(margins::delay(&self.of), unit);
+            return scaled(of!(&self.of, case => margins::delay(case)), unit);
         };
         let line = DelayLine::of(system).in_physical_time(unit);
         line.stable_interval_at(*tau)
@@ -137,18 +158,21 @@ impl Around {
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
     pub fn third(&self, search: &mut Margins) -> (Parameter, Limits) {
         if let Some((law, v0)) = self.sliding() {
-            return (Parameter::V0, margins::velocity(&self.of, &law, v0));
+            let limits = of!(&self.of, case => margins::velocity(case, &law, v0));
+            return (Parameter::V0, limits);
         }
         // √(κM)/N0.
         let damping = self.oscillator.mass() / self.oscillator.time_unit();
         let slope = damping / self.oscillator.normal_load();
-        (Parameter::MuPrime, scaled(search.slope(&self.of), slope))
+        let limits = of!(&self.of, case => search.slope(case));
+        (Parameter::MuPrime, scaled(limits, slope))
     }
 
     /// The ends of the searches for upper limits; a limit beyond is given as infinite.
     #[must_use]
     pub fn reach(&self) -> Reach {
-        let (reach, unit) = (self.of.reach(), self.oscillator.time_unit());
+        let unit = self.oscillator.time_unit();
+        let reach = of!(&self.of, case => case.reach());
         Reach {
             gain: reach.gain,
             delay: reach.delay * unit,
@@ -166,8 +190,8 @@ impl Around {
     #[must_use]
     pub fn radius(&self) -> Radius {
         match self.sliding() {
-            Some((law, v0)) => margins::radius_with_law(&self.of, &law, v0),
-            None => margins::radius(&self.of),
+            Some((law, v0)) => of!(&self.of, case => margins::radius_with_law(case, &law, v0)),
+            None => of!(&self.of, case => margins::radius(case)),
         }
     }
 

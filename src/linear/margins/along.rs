@@ -2,13 +2,12 @@
 //! a decay rate is required, and the sliding velocity.
 
 use super::affine::Affine;
-use super::beyond::{Beyond, UpTo};
-use super::enclosure::{Enclosed, Point, SlidingLaw, root_bound};
+use super::beyond::Beyond;
+use super::enclosure::{Enclosed, Point, SlidingLaw};
+use super::equations::{OnLine, UpTo};
 use super::limits::Limits;
 use super::nearest::{Family, MOST_BOXES, Nearest, nearest};
 use super::setting::{AsCase, Case, Setting};
-use crate::linear::Crossings;
-use crate::model::elementary::exp;
 use crate::model::law::Kind;
 use crate::model::{Channel, Groups};
 
@@ -26,10 +25,7 @@ pub fn delay(of: &impl AsCase) -> Limits {
     let case = of.case();
     let Setting { groups, tau, decay } = case.setting;
     if decay == 0.0 {
-        let interval = match &case.beyond {
-            Some(beyond) => beyond.stable_interval_at(groups, tau).0,
-            None => Crossings::of(groups).stable_interval_at(tau),
-        };
+        let (interval, _) = case.on_line.stable_interval_at(groups, tau);
         return interval.map_or(Limits::UNDECIDED, |found| Limits {
             lower: found.from,
             upper: found.to,
@@ -93,15 +89,9 @@ pub fn velocity(of: &impl AsCase, law: &SlidingLaw<'_>, v0: f64) -> Limits {
 }
 
 /// The longest delay that is looked at where a decay rate is required.
-pub(super) fn longest_delay(case: &Case) -> f64 {
-    let searched = longest_searched(&case.setting);
-    match &case.beyond {
-        Some(beyond) => {
-            let last = BEFORE_ACCUMULATION * beyond.last_delay(case.setting.decay);
-            searched.min(last.max(case.setting.tau))
-        }
-        None => searched,
-    }
+pub(super) fn longest_delay(case: &Case<impl OnLine>) -> f64 {
+    let last = BEFORE_ACCUMULATION * case.last_delay();
+    longest_searched(&case.setting).min(last.max(case.setting.tau))
 }
 
 /// The longest delay that is searched, whether roots accumulate before it or not.
@@ -124,7 +114,7 @@ fn found_or(nearest: Nearest, none: f64) -> f64 {
 
 /// The nearest value above `from` at which a root is on the line, looked for in steps that grow;
 /// infinite where there is none up to `last`.
-fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
+fn outwards(family: &Along<'_, impl OnLine>, from: f64, step: f64, last: f64) -> f64 {
     let (mut start, mut step, mut left) = (from, step, MOST_BOXES);
     while start < last {
         let end = (start + step).min(last);
@@ -137,7 +127,7 @@ fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
 }
 
 /// The latency margin where a decay rate is required.
-pub(super) fn latency_with_decay(case: &Case) -> f64 {
+pub(super) fn latency_with_decay(case: &Case<impl OnLine>) -> f64 {
     let family = Along {
         case: case.clone(),
         what: Varied::Latency,
@@ -147,7 +137,7 @@ pub(super) fn latency_with_decay(case: &Case) -> f64 {
 
 /// The latency margin beyond the letter, counted from no latency with all else as it is; 0 where
 /// that is not stable.
-pub(super) fn latency(case: &Case, beyond: &Beyond) -> f64 {
+pub(super) fn latency(case: &Case<impl OnLine>, beyond: &Beyond) -> f64 {
     let Setting { groups, tau, decay } = case.setting;
     if decay == 0.0 {
         let margin = beyond.of_groups(groups).system().latency_margin(tau);
@@ -169,8 +159,8 @@ pub(super) fn latency(case: &Case, beyond: &Beyond) -> f64 {
 }
 
 /// Settings that differ in one parameter.
-struct Along<'a> {
-    case: Case,
+struct Along<'a, L> {
+    case: Case<L>,
     what: Varied<'a>,
 }
 
@@ -180,7 +170,7 @@ enum Varied<'a> {
     Velocity(SlidingLaw<'a>),
 }
 
-impl Family for Along<'_> {
+impl<L: OnLine> Family for Along<'_, L> {
     fn stopped(&self) -> bool {
         self.case.stopped()
     }
@@ -197,7 +187,7 @@ impl Family for Along<'_> {
             a_v: groups.a_v,
             latency: None,
             law: matches!(self.what, Varied::Velocity(_)).then_some(1),
-            beyond: self.case.beyond,
+            beyond: self.case.on_line.beyond(),
         };
         match &self.what {
             Varied::Delay => point.tau = Affine::between(parameter, 1),
@@ -212,45 +202,30 @@ impl Family for Along<'_> {
     }
 
     fn bound(&self, parameter: (f64, f64)) -> f64 {
-        let Setting { groups, tau, decay } = self.case.setting;
-        let Groups { b, a_v, a_n } = groups;
-        if let Some(beyond) = &self.case.beyond {
-            let latency = beyond.channel.latency;
-            let here = UpTo {
-                b,
-                a_v,
-                a_n,
-                tau,
-                latency,
-            };
-            let up_to = match &self.what {
-                Varied::Delay => UpTo {
-                    tau: parameter.1,
-                    ..here
-                },
-                Varied::Latency => UpTo {
-                    latency: parameter.1,
-                    ..here
-                },
-                Varied::Velocity(law) => {
-                    let (b, a_n) = law.largest(parameter);
-                    UpTo { b, a_n, ..here }
-                }
-            };
-            return beyond.highest(up_to, decay);
-        }
-        let delayed = |tau: f64| 1.0 + exp(decay * tau);
-        let bound = match &self.what {
-            Varied::Delay => root_bound(b, a_v, a_n, delayed(parameter.1)),
-            Varied::Latency => {
-                let control = delayed(tau) * exp(decay * parameter.1);
-                root_bound(b, a_v, a_n, control)
-            }
+        let Setting { groups, tau, .. } = self.case.setting;
+        let here = UpTo {
+            groups,
+            tau,
+            latency: self.case.channel().latency,
+            factor: 1.0,
+        };
+        let (_, longest) = parameter;
+        self.case.on_line.highest(match &self.what {
+            Varied::Delay => UpTo {
+                tau: longest,
+                ..here
+            },
+            Varied::Latency => UpTo {
+                latency: longest,
+                ..here
+            },
             Varied::Velocity(law) => {
                 let (b, a_n) = law.largest(parameter);
-                root_bound(b, a_v, a_n, delayed(tau))
+                UpTo {
+                    groups: Groups { b, a_n, ..groups },
+                    ..here
+                }
             }
-        };
-        bound * (1.0 + 1e-12)
+        })
     }
 }

@@ -20,18 +20,57 @@
 
 use num_complex::Complex64;
 
+use super::beyond::Beyond;
+use super::enclosure;
 use super::setting::Setting;
 use super::trig_polynomial::{self, Polynomial, TrigPolynomial};
 use super::zeros::Wave;
+use crate::linear::certificate::roots_right_of;
 use crate::linear::characteristic::{Jet, root_bound};
+use crate::linear::stable_delays::StableInterval;
+use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
 use crate::model::elementary::exp;
 use crate::model::groups::{feedback, open_loop};
 
-/// A setting's equations in ω: those of the letter here, those beyond it in
-/// [`beyond`](super::beyond).
-pub(super) trait OnLine {
+/// Ranges of what a setting can be: sizes up to these.
+#[derive(Debug, Clone, Copy)]
+pub struct UpTo {
+    /// b, a_v and a_n.
+    pub groups: Groups,
+    /// The delay τ.
+    pub tau: f64,
+    /// The latency δ.
+    pub latency: f64,
+    /// How many times as large as these gains and delay can be.
+    pub factor: f64,
+}
+
+/// A setting's equations in ω on the line Re λ = −σ, and what is known of the settings around it:
+/// those of the letter here, those beyond it in `beyond`.
+pub trait OnLine: Clone {
+    /// The left side of an equation.
     type Function: Wave;
+
+    /// How many steps along a direction are looked at for settings that are not stable.
+    const STEPS: u32;
+
+    /// How many times D can be enclosed while the crossings of a setting are found.
+    const WORK_OF_CROSSINGS: u32;
+
+    /// What the feedback has beyond the letter's own, if anything.
+    fn beyond(&self) -> Option<Beyond>;
+
+    /// Whether all roots are left of the line with these groups and this delay; none where one is
+    /// on it within rounding.
+    fn stability(&self, groups: Groups, tau: f64) -> Option<bool>;
+
+    /// The interval of delays around `tau` in which sliding is stable with these groups; none where
+    /// it is not. And how many frequencies took many digits.
+    fn stable_interval_at(&self, groups: Groups, tau: f64) -> (Option<StableInterval>, u32);
+
+    /// The ω beyond which no root lies on the line in these ranges.
+    fn highest(&self, up_to: UpTo) -> f64;
 
     /// The left side of (1), or of (4) on the imaginary axis.
     fn gain(&self) -> Self::Function;
@@ -62,16 +101,6 @@ pub(super) trait OnLine {
 
     /// The ω beyond which no zero of (3) lies.
     fn unit_loop_bound(&self) -> f64;
-}
-
-/// D on the line Re λ = −σ.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
-    pub groups: Groups,
-    /// τ ≥ 0.
-    pub tau: f64,
-    /// σ ≥ 0.
-    pub decay: f64,
 }
 
 /// A polynomial in ω with complex coefficients.
@@ -105,12 +134,7 @@ impl Complex {
     }
 }
 
-impl Line {
-    pub(super) fn of(setting: &Setting) -> Self {
-        let Setting { groups, tau, decay } = *setting;
-        Self { groups, tau, decay }
-    }
-
+impl Setting {
     /// λ.
     fn lambda(&self) -> Complex {
         Complex::of([-self.decay, 0.0], [0.0, 1.0])
@@ -168,8 +192,35 @@ impl Line {
     }
 }
 
-impl OnLine for Line {
+impl OnLine for Setting {
     type Function = trig_polynomial::Jet;
+
+    const STEPS: u32 = 48;
+
+    const WORK_OF_CROSSINGS: u32 = 4;
+
+    fn beyond(&self) -> Option<Beyond> {
+        None
+    }
+
+    fn stability(&self, groups: Groups, tau: f64) -> Option<bool> {
+        if self.decay == 0.0 {
+            let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+            return (!count.marginal).then_some(count.n_unstable == 0);
+        }
+        roots_right_of(groups, tau, -self.decay).map(|roots| roots == 0)
+    }
+
+    fn stable_interval_at(&self, groups: Groups, tau: f64) -> (Option<StableInterval>, u32) {
+        (Crossings::of(groups).stable_interval_at(tau), 0)
+    }
+
+    fn highest(&self, up_to: UpTo) -> f64 {
+        let Groups { b, a_v, a_n } = up_to.groups;
+        let delayed = 1.0 + exp(self.decay * up_to.tau * up_to.factor);
+        let control = up_to.factor * delayed * exp(self.decay * up_to.latency);
+        enclosure::root_bound(b, a_v, a_n, control) * (1.0 + 1e-12)
+    }
 
     fn gain(&self) -> trig_polynomial::Jet {
         let product = self.feedback().times(self.open_loop().conjugate());

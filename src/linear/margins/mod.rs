@@ -59,16 +59,15 @@ mod zeros;
 
 use std::f64::consts::TAU;
 
-use self::beyond::Equations;
-use self::equations::{Line, OnLine};
 use self::nearest_change::{Search, Side};
 use self::surroundings::{Surroundings, Third};
 use self::zeros::{Intervals, TooMany};
 use crate::model::elementary::arg;
 
 pub use self::along::{MOST_VELOCITIES, delay, velocity};
-pub use self::beyond::Beyond;
+pub use self::beyond::{Beyond, Equations};
 pub use self::enclosure::SlidingLaw;
+pub use self::equations::OnLine;
 pub use self::limits::{Limits, LoopMargins};
 pub use self::radius::Radius;
 pub use self::setting::{AsCase, Case, Setting};
@@ -97,16 +96,13 @@ pub struct Reach {
     pub latency: f64,
 }
 
-impl Case {
+impl<L: OnLine> Case<L> {
     /// How far upper limits are looked for.
     #[must_use]
     pub fn reach(&self) -> Reach {
         let (endless, setting) = (f64::INFINITY, &self.setting);
         let searched = |search: bool, to: f64| if search { to } else { endless };
-        let highest = match &self.beyond {
-            Some(beyond) => Equations::new(setting, beyond).highest_with_gain(),
-            None => Line::of(setting).highest_with_gain(),
-        };
+        let highest = self.on_line.highest_with_gain();
         let bounded = setting.idle() || highest.is_finite();
         Reach {
             gain: searched(!bounded, MOST_GAINS),
@@ -133,13 +129,7 @@ impl Margins {
                 upper: f64::INFINITY,
             };
         }
-        match &case.beyond {
-            Some(beyond) => self.gain_limits(&case, &Equations::new(&case.setting, beyond)),
-            None => self.gain_limits(&case, &Line::of(&case.setting)),
-        }
-    }
-
-    fn gain_limits(&mut self, case: &Case, line: &impl OnLine) -> Limits {
+        let line = &case.on_line;
         let highest = line.highest_with_gain();
         let f = line.gain();
         // The greatest factor whose crossings are all among those found.
@@ -191,13 +181,7 @@ impl Margins {
     /// The slopes b at which stability is lost, μ_K fixed; −∞ below where it never is.
     pub fn slope(&mut self, of: &impl AsCase) -> Limits {
         let case = of.case();
-        match &case.beyond {
-            Some(beyond) => self.slope_limits(&case, &Equations::new(&case.setting, beyond)),
-            None => self.slope_limits(&case, &Line::of(&case.setting)),
-        }
-    }
-
-    fn slope_limits(&mut self, case: &Case, line: &impl OnLine) -> Limits {
+        let line = &case.on_line;
         let f = line.slope();
         self.changes.clear();
         let changes = &mut self.changes;
@@ -230,36 +214,29 @@ impl Margins {
     /// The phase margin and the latency margin.
     pub fn of_loop(&mut self, of: &impl AsCase) -> LoopMargins {
         let case = of.case();
-        match &case.beyond {
-            Some(beyond) => LoopMargins {
-                phase: self.phase(&case),
-                latency: along::latency(&case, beyond),
-            },
-            None => self.of_letters_loop(&case.setting),
-        }
-    }
-
-    fn of_letters_loop(&mut self, setting: &Setting) -> LoopMargins {
+        let setting = &case.setting;
+        let from_none = case.on_line.beyond().map(|of| along::latency(&case, &of));
         let mut margins = LoopMargins {
             phase: f64::INFINITY,
-            latency: f64::INFINITY,
+            latency: from_none.unwrap_or(f64::INFINITY),
         };
         if setting.idle() {
             return margins;
         }
-        let line = Line::of(setting);
-        let searched = self.unit_loop(&line, |omega, angle| {
+        let mut latency = f64::INFINITY;
+        let searched = self.unit_loop(&case.on_line, |omega, angle| {
             margins.phase = margins.phase.min(angle.abs());
             let ahead = if angle > 0.0 { angle } else { angle + TAU };
-            margins.latency = margins.latency.min(ahead / omega);
+            latency = latency.min(ahead / omega);
         });
-        if setting.decay > 0.0 {
-            margins.latency = along::latency_with_decay(&setting.case());
+        if setting.decay > 0.0 && from_none.is_none() {
+            latency = along::latency_with_decay(&case);
         }
         if searched.is_err() {
             margins.phase = f64::NAN;
-            margins.latency = f64::NAN;
+            latency = f64::NAN;
         }
+        margins.latency = from_none.unwrap_or(latency);
         margins
     }
 
@@ -267,9 +244,9 @@ impl Margins {
     /// is; it is 0 where the setting is not stable without latency.
     pub fn latency(&mut self, of: &impl AsCase) -> f64 {
         let case = of.case();
-        match &case.beyond {
-            Some(beyond) => along::latency(&case, beyond),
-            None => self.of_letters_loop(&case.setting).latency,
+        match case.on_line.beyond() {
+            Some(beyond) => along::latency(&case, &beyond),
+            None => self.of_loop(&case).latency,
         }
     }
 
@@ -279,15 +256,8 @@ impl Margins {
         if case.setting.idle() {
             return f64::INFINITY;
         }
-        match &case.beyond {
-            Some(beyond) => self.least_phase(&Equations::new(&case.setting, beyond)),
-            None => self.least_phase(&Line::of(&case.setting)),
-        }
-    }
-
-    fn least_phase(&mut self, line: &impl OnLine) -> f64 {
         let mut phase = f64::INFINITY;
-        match self.unit_loop(line, |_, angle| phase = phase.min(angle.abs())) {
+        match self.unit_loop(&case.on_line, |_, angle| phase = phase.min(angle.abs())) {
             Ok(()) => phase,
             Err(TooMany) => f64::NAN,
         }

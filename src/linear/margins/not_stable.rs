@@ -4,27 +4,18 @@
 use num_complex::Complex64;
 
 use super::affine::Affine;
+use super::equations::OnLine;
 use super::surroundings::{ALL, ANY_SLOPE, Changes, Surroundings, changes, largest};
-use crate::linear::Crossings;
 use crate::model::elementary::power;
 
 /// The most steps of Newton's method: at a touch each halves the distance.
 const MOST_STEPS: u32 = 48;
 /// The most steps of Newton's method that may lead away from a zero.
 const MOST_ASTRAY: u32 = 3;
-/// Steps along a direction when settings that are not stable are looked for.
-const STEPS: u32 = 48;
-/// Steps along a direction beyond the letter, where the count takes ten times as long.
-const STEPS_BEYOND: u32 = 12;
-
-/// Finding the crossings of a setting takes as long as enclosing D so many times.
-const WORK_OF_CROSSINGS: u32 = 4;
-/// Finding the crossings of a setting beyond the letter takes as long as enclosing D so many times.
-const WORK_OF_CROSSINGS_BEYOND: u32 = 16;
 /// Computing a frequency with many digits takes as long as enclosing D so many times.
 const WORK_OF_DIGITS: u32 = 500;
 
-impl Surroundings<'_> {
+impl<L: OnLine> Surroundings<'_, L> {
     /// A setting that is not stable near `here`, or near a `candidate` for a zero of D (ω and
     /// changes), where one may be nearer than `bound`.
     pub(super) fn not_stable_near(
@@ -38,10 +29,7 @@ impl Surroundings<'_> {
             return None;
         }
         let lost = (self.case.setting.decay == 0.0).then(|| {
-            *work += match self.case.beyond {
-                Some(_) => WORK_OF_CROSSINGS_BEYOND,
-                None => WORK_OF_CROSSINGS,
-            };
+            *work += L::WORK_OF_CROSSINGS;
             self.delay_lost(here, work)
         });
         let nearer = |found: &Changes| largest(*found) < bound;
@@ -59,14 +47,8 @@ impl Surroundings<'_> {
     /// sliding is not stable.
     fn delay_lost(&self, [gain, _, third]: Changes, work: &mut u32) -> Option<Changes> {
         let (groups, tau) = self.changed([gain, 0.0, third]);
-        let interval = match &self.case.beyond {
-            Some(beyond) => {
-                let (found, resolved) = beyond.stable_interval_at(groups, tau);
-                *work += WORK_OF_DIGITS * resolved;
-                found
-            }
-            None => Crossings::of(groups).stable_interval_at(tau),
-        };
+        let (interval, resolved) = self.case.on_line.stable_interval_at(groups, tau);
+        *work += WORK_OF_DIGITS * resolved;
         let change = match interval {
             None => 0.0,
             Some(_) if tau == 0.0 => return None,
@@ -146,11 +128,7 @@ impl Surroundings<'_> {
             }
             let most = nearest.map_or(limit, largest);
             let along = |s: f64| direction.map(|d| s * d);
-            let steps = match self.case.beyond {
-                Some(_) => STEPS_BEYOND,
-                None => STEPS,
-            };
-            let mut steps = (1..=steps).map(|i| most * f64::from(i) / f64::from(steps));
+            let mut steps = (1..=L::STEPS).map(|i| most * f64::from(i) / f64::from(L::STEPS));
             if let Some(s) = steps.find(|s| !self.stable(along(*s))) {
                 let found = self.shortened(along(s));
                 if nearest.is_none_or(|n| largest(found) < largest(n)) {

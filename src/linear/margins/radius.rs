@@ -16,6 +16,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::crossing_delays::Delays;
+use super::equations::OnLine;
 use super::setting::Setting;
 use super::surroundings::{ALL, Changes, DELAY, JUMP, Sides, Surroundings, largest};
 use crate::model::elementary::exp;
@@ -83,7 +84,7 @@ impl Ord for Part {
     }
 }
 
-impl Surroundings<'_> {
+impl<L: OnLine> Surroundings<'_, L> {
     /// The stability radius of a setting that is stable, at most `limit`.
     pub(super) fn radius(&self, limit: f64) -> Radius {
         let fixed = self.fixed();
@@ -150,10 +151,9 @@ impl Surroundings<'_> {
     /// they never do.
     fn accumulation(&self) -> Option<f64> {
         let Setting { groups, tau, decay } = self.case.setting;
-        let beyond = self.case.beyond?;
-        let acts =
-            decay > 0.0 && tau > 0.0 && beyond.channel.memory != 0.0 && !groups.uncontrolled();
-        acts.then(|| beyond.last_delay(decay) / tau - 1.0)
+        let remembers = self.case.channel().memory != 0.0;
+        let acts = decay > 0.0 && tau > 0.0 && remembers && !groups.uncontrolled();
+        acts.then(|| self.case.last_delay() / tau - 1.0)
     }
 
     /// A box, in which nothing is nearer than `at_least`; none where D cannot vanish on it.

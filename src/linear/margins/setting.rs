@@ -1,8 +1,8 @@
 //! A setting whose margins are asked for: the letter's own, or one beyond it.
 
-use super::beyond::Beyond;
-use crate::linear::certificate::roots_right_of;
-use crate::linear::{Crossings, MarginalTolerance};
+use super::beyond::{Beyond, Equations};
+use super::equations::OnLine;
+use crate::model::elementary::ln;
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups};
 
@@ -17,31 +17,38 @@ pub struct Setting {
     pub decay: f64,
 }
 
-/// A setting with what its feedback has beyond the letter's own, where it has any of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+/// A setting with the equations of its feedback.
+#[derive(Debug, Clone)]
+pub struct Case<L = Equations> {
     pub(super) setting: Setting,
-    pub(super) beyond: Option<Beyond>,
+    pub(super) on_line: L,
     stop: Stop,
 }
 
 /// What margins can be asked of.
 pub trait AsCase {
-    /// The setting, with what its feedback has beyond the letter's own.
-    fn case(&self) -> Case;
+    /// The equations of the feedback.
+    type OnLine: OnLine;
+
+    /// The setting with these equations.
+    fn case(&self) -> Case<Self::OnLine>;
 }
 
-impl AsCase for Case {
-    fn case(&self) -> Case {
+impl<L: OnLine> AsCase for Case<L> {
+    type OnLine = L;
+
+    fn case(&self) -> Self {
         self.clone()
     }
 }
 
 impl AsCase for Setting {
-    fn case(&self) -> Case {
+    type OnLine = Self;
+
+    fn case(&self) -> Case<Self> {
         Case {
             setting: *self,
-            beyond: None,
+            on_line: *self,
             stop: Stop::default(),
         }
     }
@@ -70,16 +77,16 @@ impl Case {
         }
         Self {
             setting,
-            beyond: Some(beyond),
+            on_line: Equations::new(&setting, &beyond),
             stop: Stop::default(),
         }
     }
+}
 
-    /// The same, but once `stop` is set margins are told soon, and mean nothing.
-    #[must_use]
-    pub fn heeding(self, stop: &Stop) -> Self {
-        let stop = stop.clone();
-        Self { stop, ..self }
+impl<L: OnLine> Case<L> {
+    /// Once `stop` is set, margins are told soon, and mean nothing.
+    pub fn heed(&mut self, stop: &Stop) {
+        self.stop = stop.clone();
     }
 
     /// Whether nobody waits for the margins any more.
@@ -87,10 +94,17 @@ impl Case {
         self.stop.is_set()
     }
 
-    /// Whether the feedback has anything beyond the letter's own.
-    #[must_use]
-    pub fn is_beyond(&self) -> bool {
-        self.beyond.is_some()
+    /// Memory and latency.
+    pub(super) fn channel(&self) -> Channel {
+        self.on_line.beyond().unwrap_or_default().channel
+    }
+
+    /// The delay at which infinitely many roots come to the line Re λ = −σ: ln(1/|R|)/σ.
+    pub(super) fn last_delay(&self) -> f64 {
+        match self.channel().memory {
+            0.0 => f64::INFINITY,
+            memory => -ln(memory.abs()) / self.setting.decay,
+        }
     }
 
     /// Whether all roots are left of the line, beyond doubt.
@@ -106,11 +120,7 @@ impl Case {
         if self.stopped() {
             return None;
         }
-        let decay = self.setting.decay;
-        match &self.beyond {
-            Some(beyond) => beyond.stability(groups, tau, decay),
-            None => stability(groups, tau, decay),
-        }
+        self.on_line.stability(groups, tau)
     }
 
     /// Whether all roots are left of the line with both gains `factor` times as large; none where
@@ -127,13 +137,4 @@ impl Case {
         let Setting { groups, tau, .. } = self.setting;
         self.stability_at(Groups { b, ..groups }, tau)
     }
-}
-
-/// Whether all roots are left of Re λ = −`decay`; none where one is on that line within rounding.
-fn stability(groups: Groups, tau: f64, decay: f64) -> Option<bool> {
-    if decay == 0.0 {
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        return (!count.marginal).then_some(count.n_unstable == 0);
-    }
-    roots_right_of(groups, tau, -decay).map(|roots| roots == 0)
 }

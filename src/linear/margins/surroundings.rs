@@ -1,11 +1,10 @@
 //! The settings around a setting: what D depends on there, and which of them are stable.
 
 use super::affine::Affine;
-use super::beyond::UpTo;
-use super::enclosure::{Point, SlidingLaw, Slope, root_bound};
+use super::enclosure::{Point, SlidingLaw, Slope};
+use super::equations::{OnLine, UpTo};
 use super::setting::{Case, Setting};
 use crate::model::Groups;
-use crate::model::elementary::exp;
 
 /// The relative changes of gain, delay and third parameter: 0 where one stays as it is.
 pub type Changes = [f64; 3];
@@ -19,8 +18,8 @@ pub(super) enum Third<'a> {
 }
 
 /// A setting and the settings around it.
-pub(super) struct Surroundings<'a> {
-    pub case: Case,
+pub(super) struct Surroundings<'a, L> {
+    pub case: Case<L>,
     pub third: Third<'a>,
 }
 
@@ -44,7 +43,7 @@ pub(super) fn largest(changes: Changes) -> f64 {
     changes.iter().fold(0.0, |most, d| most.max(d.abs()))
 }
 
-impl Surroundings<'_> {
+impl<L: OnLine> Surroundings<'_, L> {
     /// The groups and the delay of a changed setting.
     pub(super) fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
         let Setting { groups, tau, .. } = self.case.setting;
@@ -105,7 +104,7 @@ impl Surroundings<'_> {
             a_v: groups.a_v,
             latency: None,
             law: matches!(self.third, Third::Velocity(..)).then_some(3),
-            beyond: self.case.beyond,
+            beyond: self.case.on_line.beyond(),
         })
     }
 
@@ -120,22 +119,16 @@ impl Surroundings<'_> {
 
     /// The ω beyond which no root is on the line while all changes are at most `most`.
     pub(super) fn highest(&self, most: f64) -> f64 {
-        let Setting { groups, tau, decay } = self.case.setting;
+        let Setting { groups, tau, .. } = self.case.setting;
         let (b, a_n) = match self.third {
             Third::Slope => (groups.b * (1.0 + most), groups.a_n),
             Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
         };
-        if let Some(beyond) = &self.case.beyond {
-            let up_to = UpTo {
-                b,
-                a_v: groups.a_v * (1.0 + most),
-                a_n: a_n * (1.0 + most),
-                tau: tau * (1.0 + most),
-                latency: beyond.channel.latency,
-            };
-            return beyond.highest(up_to, decay);
-        }
-        let control = (1.0 + most) * (1.0 + exp(decay * tau * (1.0 + most)));
-        root_bound(b, groups.a_v, a_n, control) * (1.0 + 1e-12)
+        self.case.on_line.highest(UpTo {
+            groups: Groups { b, a_n, ..groups },
+            tau,
+            latency: self.case.channel().latency,
+            factor: 1.0 + most,
+        })
     }
 }

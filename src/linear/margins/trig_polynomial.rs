@@ -124,7 +124,7 @@ impl TrigPolynomial {
 }
 
 /// A function with two derivatives.
-pub(super) struct Jet {
+pub struct Jet {
     f: TrigPolynomial,
     first: TrigPolynomial,
     second: TrigPolynomial,

@@ -20,7 +20,7 @@ const STEPS_WITHIN_ROUNDING: u32 = 3;
 pub(super) type Bounded = (f64, f64);
 
 /// A function f whose zeros are looked for.
-pub(super) trait Wave {
+pub trait Wave {
     /// f and f′ at `omega` ≥ 0.
     fn at(&self, omega: f64) -> [Bounded; 2];
 

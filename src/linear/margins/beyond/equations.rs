@@ -24,20 +24,21 @@
 
 use num_complex::Complex64;
 
-use super::super::equations::OnLine;
+use super::super::equations::{OnLine, UpTo};
 use super::super::setting::Setting;
 use super::feedback::Beyond;
 use super::sum::{Part, Sum, Terms, conjugate};
 use crate::linear::characteristic::{late, one_minus_exp};
 use crate::linear::feedback_loop::{polynomial, times};
-use crate::linear::general::{Polynomial, System};
+use crate::linear::general::{DelayLine, Polynomial, System};
 use crate::linear::rounded::Rounded;
+use crate::linear::stable_delays::StableInterval;
 use crate::model::Groups;
 use crate::model::elementary::exp;
 
 /// A setting with what its feedback has beyond the letter's own.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct Equations {
+pub struct Equations {
     setting: Setting,
     beyond: Beyond,
     /// B and A as polynomials in λ.
@@ -196,6 +197,28 @@ impl Equations {
 
 impl OnLine for Equations {
     type Function = Sum;
+
+    /// The count takes ten times as long as for the letter.
+    const STEPS: u32 = 12;
+
+    const WORK_OF_CROSSINGS: u32 = 16;
+
+    fn beyond(&self) -> Option<Beyond> {
+        Some(self.beyond)
+    }
+
+    fn stability(&self, groups: Groups, tau: f64) -> Option<bool> {
+        self.beyond.stability(groups, tau, self.setting.decay)
+    }
+
+    fn stable_interval_at(&self, groups: Groups, tau: f64) -> (Option<StableInterval>, u32) {
+        let line = DelayLine::of(&self.beyond.of_groups(groups).system());
+        (line.stable_interval_at(tau), line.resolved)
+    }
+
+    fn highest(&self, up_to: UpTo) -> f64 {
+        self.beyond.highest(up_to, self.setting.decay)
+    }
 
     /// The left side of (1), or of (5) on the imaginary axis.
     fn gain(&self) -> Sum {

@@ -3,8 +3,6 @@
 use crate::linear::MarginalTolerance;
 use crate::linear::feedback_loop::{FeedbackLoop, LagPolynomials};
 use crate::linear::general::{DelayLine, RightOf, RootCounter};
-use crate::linear::stable_delays::StableInterval;
-use crate::model::elementary::ln;
 use crate::model::{Channel, Groups, Lags};
 
 /// What feedback has beyond the letter's own, in dimensionless numbers: (1) and (2) of `beyond`.
@@ -41,25 +39,6 @@ impl Beyond {
             RightOf::Roots(roots) => Some(roots == 0),
             RightOf::Infinite => Some(false),
             RightOf::Undecided => None,
-        }
-    }
-
-    /// The interval of delays around `tau` in which sliding is stable; none where it is not. And
-    /// how many frequencies took many digits.
-    pub(in super::super) fn stable_interval_at(
-        &self,
-        groups: Groups,
-        tau: f64,
-    ) -> (Option<StableInterval>, u32) {
-        let line = DelayLine::of(&self.of_groups(groups).system());
-        (line.stable_interval_at(tau), line.resolved)
-    }
-
-    /// The delay at which infinitely many roots come to the line Re λ = −`decay`: ln(1/|R|)/σ.
-    pub(in super::super) fn last_delay(&self, decay: f64) -> f64 {
-        match self.channel.memory {
-            0.0 => f64::INFINITY,
-            memory => -ln(memory.abs()) / decay,
         }
     }
 }

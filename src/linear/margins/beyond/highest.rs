@@ -1,6 +1,7 @@
 //! Frequencies beyond which no root lies on the line, over ranges of what a setting can be.
 
 use super::super::enclosure::root_bound;
+use super::super::equations::UpTo;
 use super::feedback::Beyond;
 use crate::model::elementary::exp;
 
@@ -9,16 +10,6 @@ const NEARER: f64 = 0.8;
 /// The most such steps.
 const MOST_STEPS: u32 = 60;
 
-/// Ranges of what a setting can be: sizes up to these.
-#[derive(Debug, Clone, Copy)]
-pub(in super::super) struct UpTo {
-    pub b: f64,
-    pub a_v: f64,
-    pub a_n: f64,
-    pub tau: f64,
-    pub latency: f64,
-}
-
 impl Beyond {
     /// The ω beyond which no root lies on λ = −σ + iω, σ = `decay`; infinite where roots accumulate
     /// on that line.
@@ -26,8 +17,9 @@ impl Beyond {
     /// |B₀| ≤ c |A₀|, c = e^(σδ)(1 + e^(στ))/(1 − |R| e^(στ)), where every part of A₀ is divided by
     /// the lags that it does not pass. |1 + Tλ|² = (1 − Tσ)² + T²ω² grows with ω, so what holds
     /// beyond one frequency makes the next, lower one.
-    pub(in super::super) fn highest(&self, up_to: UpTo, decay: f64) -> f64 {
-        let delayed = exp(decay * up_to.tau) * (1.0 + 1e-12);
+    pub(super) fn highest(&self, up_to: UpTo, decay: f64) -> f64 {
+        let UpTo { groups, factor, .. } = up_to;
+        let delayed = exp(decay * (up_to.tau * factor)) * (1.0 + 1e-12);
         let kept = 1.0 - self.channel.memory.abs() * delayed;
         if kept.is_nan() || kept <= 0.0 {
             return f64::INFINITY;
@@ -39,9 +31,9 @@ impl Beyond {
                 (re * re + im * im).sqrt()
             };
             let sensor = lag(self.lags.sensor);
-            let a_v = up_to.a_v.abs() / (lag(self.lags.velocity) * sensor);
-            let a_n = up_to.a_n.abs() / (lag(self.lags.load) * sensor);
-            root_bound(up_to.b, a_v, a_n, control) * (1.0 + 1e-12)
+            let a_v = (groups.a_v * factor).abs() / (lag(self.lags.velocity) * sensor);
+            let a_n = (groups.a_n * factor).abs() / (lag(self.lags.load) * sensor);
+            root_bound(groups.b, a_v, a_n, control) * (1.0 + 1e-12)
         };
         // A lag of exactly 1/σ is 0 at ω = 0 alone.
         let mut highest = beyond(1.0).max(1.0);

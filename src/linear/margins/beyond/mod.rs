@@ -16,6 +16,5 @@ mod feedback;
 mod highest;
 mod sum;
 
-pub(super) use self::equations::Equations;
+pub use self::equations::Equations;
 pub use self::feedback::Beyond;
-pub(super) use self::highest::UpTo;

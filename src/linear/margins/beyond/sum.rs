@@ -175,7 +175,7 @@ impl Waves {
 
 /// A function (1), prepared.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Sum {
+pub struct Sum {
     part: Part,
     waves: [Waves; MOST_TERMS],
     count: usize,
