@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5::{Dataset, Group};
@@ -12,10 +13,15 @@ use slipmap::maps::maker::make_in_memory;
 use slipmap::sweep::Plan;
 use slipmap::sweep::described::root::Provenance;
 
-/// Computes the map of a plan.
+/// Computes the map of a plan. A child that another test starts meanwhile holds the lock of what is
+/// written for a moment, and then it is written again.
 pub(crate) fn write(plan: &Plan, threads: usize, path: &Path) {
     let plan = Arc::new(plan.clone());
-    make_in_memory(&plan, path, threads, &Provenance::default()).unwrap();
+    let begun = Instant::now();
+    while let Err(error) = make_in_memory(&plan, path, threads, &Provenance::default()) {
+        assert!(begun.elapsed() < Duration::from_secs(20), "{error}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
     settle(path);
 }
 
