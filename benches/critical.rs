@@ -17,9 +17,11 @@ use slipmap::critical::{
 use slipmap::model::Feedback;
 use slipmap::slip::motion::Accuracy;
 
+#[path = "../tests/common/chance.rs"]
+mod chance;
 #[path = "../tests/common/chance_problem.rs"]
 mod chance_problem;
-use chance_problem::Chance;
+use chance::Chance;
 
 struct Timed {
     problem: Problem,

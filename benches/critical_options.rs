@@ -18,9 +18,11 @@ use slipmap::critical::{CriticalVelocity, Options, Problem, Transition, critical
 use slipmap::model::Feedback;
 use slipmap::slip::motion::Accuracy;
 
+#[path = "../tests/common/chance.rs"]
+mod chance;
 #[path = "../tests/common/chance_problem.rs"]
 mod chance_problem;
-use chance_problem::Chance;
+use chance::Chance;
 
 /// Answers that differ by more than this are others.
 const SAME: f64 = 1e-5;

@@ -244,7 +244,7 @@ class Shape:
         return found
 
     def test_binaries(self) -> list[str]:
-        named = {of.get("path", f"tests/{of['name']}.rs") for of in self.manifest.get("test", [])}
+        named = {of["path"] for of in self.manifest.get("test", []) if "path" in of}
         tops = {f.path for f in self.files if re.fullmatch(r"tests/[^/]+(?:\.rs|/main\.rs)", f.path)}
         return sorted(named | tops)
 

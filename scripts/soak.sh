@@ -3,10 +3,10 @@
 #
 #   scripts/soak.sh [HOURS]
 #
-# The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/faults.rs), every loss of
-# power (tests/crash.rs) and the memory of each command (tests/memory.rs), then in turn, with new seeds, until the time is over
-# (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, losses of power, motions and critical velocities
-# against the referee.
+# The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/timed/faults.rs), every
+# loss of power (tests/files/crash.rs) and the memory of each command (tests/files/memory.rs), then in turn, with new seeds,
+# until the time is over (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, losses of power, motions and
+# critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -29,26 +29,26 @@ tests() {
 say "unlike processors"
 scripts/unlike.sh
 say "every fault"
-SLIPMAP_FAULTS=all tests --test faults
+SLIPMAP_FAULTS=all tests --test timed faults::
 say "every loss of power"
-SLIPMAP_FAULTS=all tests --test crash
+SLIPMAP_FAULTS=all tests --test files crash::
 say "memory of every command"
-SLIPMAP_MEMORY=all tests --test memory -- --nocapture
+SLIPMAP_MEMORY=all tests --test files memory:: -- --nocapture
 round=0
 while [ $SECONDS -lt $until ]; do
     round=$((round + 1))
     export SLIPMAP_SEED=$((RANDOM * 32768 + RANDOM))
     say "round $round, seed $SLIPMAP_SEED"
-    SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test overnight
-    SLIPMAP_DAMAGED=2000 tests --test damaged
-    SLIPMAP_FLIPS=2500 SLIPMAP_TILE_FLIPS=1000 tests --test flips
-    tests --test crash
+    SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test timed overnight::
+    SLIPMAP_DAMAGED=2000 tests --test program damaged::
+    SLIPMAP_FLIPS=2500 SLIPMAP_TILE_FLIPS=1000 tests --test program flips::
+    tests --test files crash::
     SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
     SLIPMAP_CASES=100 tests --test referee -- --test-threads=2 motions_with_memory
-    SLIPMAP_CASES=10000 tests --test general_latency_random
-    SLIPMAP_CASES=100000 tests --test general_random
-    SLIPMAP_CASES=2000 tests --test chains
-    SLIPMAP_CASES=100000 tests --test near_resonance
-    SLIPMAP_CASES=1000 tests --test best_general
+    SLIPMAP_CASES=10000 tests --test linear general_latency_random::
+    SLIPMAP_CASES=100000 tests --test linear general_random::
+    SLIPMAP_CASES=2000 tests --test linear chains::
+    SLIPMAP_CASES=100000 tests --test linear near_resonance::
+    SLIPMAP_CASES=1000 tests --test linear best_general::
 done
 say "$round rounds"

@@ -3,9 +3,7 @@
 use slipmap::critical::Problem;
 use slipmap::model::{Feedback, FrictionLaw, Table};
 
-#[path = "chance.rs"]
-mod chance;
-pub(crate) use chance::Chance;
+use super::chance::Chance;
 
 impl Chance {
     /// Weakening or Coulomb friction under load, velocity or mixed control.

@@ -7,7 +7,7 @@
  *
  * FAULTS_DELAY: so many milliseconds pass before what lies in the folder is read, once the file FAULTS_DELAY_ONCE is there.
  *
- * FAULTS_TRACE: a file that gets every such call that succeeded, in their order, as tests/crash/trace.rs reads them.
+ * FAULTS_TRACE: a file that gets every such call that succeeded, in their order, as tests/files/crash/trace.rs reads them.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>

@@ -1,5 +1,6 @@
 //! `slipmap reference`: the reference pages of the guide, generated from the tables that the
-//! program itself uses. The command is hidden; `tests/guide.rs` compares the pages with its output.
+//! program itself uses. The command is hidden; `tests/guide/book.rs` compares the pages with its
+//! output.
 //!
 //! - `command_line`: the command line, from the data of `--help`
 //! - `map_file`: the contents of map and trace files

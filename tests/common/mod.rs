@@ -1,4 +1,0 @@
-//! Helpers that several test programs share.
-
-pub(crate) mod cases;
-pub(crate) mod winding;

@@ -1,0 +1,29 @@
+//! The program as its users meet it: command lines, files that it reads and writes, sound and
+//! damaged ones, pictures, other text, and scripts around it.
+
+#[path = "../common/chance.rs"]
+mod chance;
+#[path = "../common/general_rows.rs"]
+mod general_rows;
+#[path = "../common/limited.rs"]
+mod limited;
+#[path = "../common/map.rs"]
+mod map;
+#[path = "../common/program.rs"]
+mod program;
+
+mod cli;
+mod damaged;
+mod export;
+mod flips;
+mod manners;
+mod names;
+mod pictures;
+mod point_plot;
+mod reproduce;
+mod rig;
+mod shards;
+mod systems;
+mod traces;
+mod unlike;
+mod verify;

@@ -1,0 +1,28 @@
+//! `slipmap serve` over real connections.
+
+#[cfg(target_os = "linux")]
+#[path = "../common/chance.rs"]
+mod chance;
+#[cfg(target_os = "linux")]
+#[path = "../common/map.rs"]
+mod map;
+#[cfg(target_os = "linux")]
+#[path = "../common/processes.rs"]
+mod processes;
+#[path = "../common/program.rs"]
+mod program;
+#[path = "../common/server.rs"]
+mod server;
+
+mod openapi;
+mod serve;
+mod serve_maps;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// One test at a time that opens hundreds of connections: all tests together have as many files as
+/// one process may open.
+fn with_many_connections() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
