@@ -1,6 +1,6 @@
-//! A field, a parameter and a friction law that somebody adds, each by the few lines of a patch in
-//! `tests/growth`: a copy of the crate with them makes a map, which is read with the HDF5 library
-//! and compared with closed forms.
+//! A field, a parameter, a friction law and a command that somebody adds, each by the few lines of
+//! a patch in `tests/growth`: a copy of the crate with them makes a map, which is read with the HDF5
+//! library and compared with closed forms, and runs the command.
 
 use std::fs;
 use std::path::Path;
@@ -8,13 +8,15 @@ use std::process::Command;
 
 /// Patches in the order in which they are applied, the files that they touch, and the lines that
 /// they add.
-const PATCHES: [(&str, usize, usize); 3] = [
+const PATCHES: [(&str, usize, usize); 4] = [
     // A row that picks a number which motions have.
     ("field", 1, 10),
     // A row.
     ("parameter", 1, 11),
     // Its file: value, slope, bounds and series; its line; its row.
     ("law", 3, 75),
+    // Its file; its line in the list, its `mod` and its row.
+    ("command", 2, 15),
 ];
 
 fn run(command: &mut Command) {
@@ -97,7 +99,8 @@ fn grown(folder: &Path) {
         apply.env("GIT_CEILING_DIRECTORIES", folder);
         let first = patch
             .lines()
-            .find_map(|l| l.strip_prefix("+++ b/"))
+            .filter_map(|l| l.strip_prefix("+++ b/"))
+            .find(|file| folder.join(file).exists())
             .unwrap();
         let before = fs::read_to_string(folder.join(first)).unwrap();
         run(apply.arg("apply").arg("-C1").arg(path).current_dir(folder));
@@ -117,7 +120,7 @@ fn period(v0: f64) -> f64 {
 }
 
 #[test]
-fn a_field_a_parameter_and_a_law_are_a_few_lines_each() {
+fn a_field_a_parameter_a_law_and_a_command_are_a_few_lines_each() {
     let folder = tempfile::tempdir().unwrap();
     grown(folder.path());
     let map = folder.path().join("map.h5");
@@ -137,6 +140,12 @@ fn a_field_a_parameter_and_a_law_are_a_few_lines_each() {
     let target = profile.parent().unwrap();
     build.arg("--target-dir").arg(target).arg("--").arg(&map);
     run(build.current_dir(folder.path()));
+
+    // The example is the command line too.
+    let grown = profile.join("examples/grown");
+    let laws = Command::new(grown).arg("laws").output().unwrap();
+    let laws = String::from_utf8(laws.stdout).unwrap();
+    assert!(laws.contains("viscous: μ_K = μ0 + c v\n"), "{laws}");
 
     let file = hdf5::File::open(&map).unwrap();
     let read = |name: &str| file.dataset(name).unwrap().read_raw::<f64>().unwrap();
