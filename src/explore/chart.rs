@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::linear::curves::CurvePiece;
 use crate::setting::SweepSpec;
+use crate::setting::source::Cost;
 use crate::sweep::Plan;
 use crate::sweep::engine::RunError;
 use crate::sweep::events::Attended;
@@ -151,19 +152,11 @@ impl Chart {
 impl Limits {
     /// The most cells of a sweep with these fields.
     fn most(&self, plan: &Plan) -> u64 {
-        let spec = &plan.spec;
-        let most = if let Some(basin) = &spec.basin {
-            self.followed / u64::from(basin.starts)
-        } else if spec.follows_motions() || spec.critical.is_some() {
-            self.followed
-        } else if spec
-            .fields
-            .iter()
-            .any(|field| field.roots_needed() > 0 || field.of_margins())
-        {
-            self.rooted
-        } else {
-            self.counted
+        let most = match plan.spec.cost() {
+            Cost::Counted => self.counted,
+            Cost::Rooted | Cost::Searched | Cost::Proved => self.rooted,
+            Cost::Followed | Cost::Critical => self.followed,
+            Cost::FollowedOften => self.followed / u64::from(plan.spec.motions_per_cell()),
         };
         most.min(self.bytes / plan.bytes_per_cell())
     }
@@ -180,14 +173,10 @@ pub fn bytes(plan: &Plan) -> u64 {
 /// are those of another system than the letter's, or curves are walked step by step.
 #[must_use]
 pub fn is_slow(plan: &Plan) -> bool {
-    let spec = &plan.spec;
-    let rooted = spec.fields.iter().any(|field| field.roots_needed() > 0);
-    (rooted && !spec.is_of_letter())
+    let cost = plan.spec.cost();
+    cost > Cost::Rooted
+        || (cost == Cost::Rooted && !plan.spec.is_of_letter())
         || plan.walks_boundaries()
-        || spec.follows_motions()
-        || spec.basin.is_some()
-        || spec.critical.is_some()
-        || spec.fields.iter().any(|field| field.of_margins())
         || plan.best_planes() > 0
 }
 

@@ -30,6 +30,42 @@ pub enum Source {
     Limit(fn(&LimitCell) -> f64),
 }
 
+/// What a cell costs, the cheapest first. The dearest field of a sweep decides on the size of its
+/// tiles, its memory, and whether a stop is heeded between cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Cost {
+    /// A share of the closed form of a line, or of the limit of a short delay: well below 1 µs.
+    Counted,
+    /// Roots, followed from delay to delay: thousands of times as much.
+    Rooted,
+    /// Margins, searched for in every cell.
+    Searched,
+    /// The stability radius, proved box by box: about 1 ms.
+    Proved,
+    /// A motion: about 1 ms.
+    Followed,
+    /// Motions from many starts.
+    FollowedOften,
+    /// A critical velocity: up to 1 s.
+    Critical,
+}
+
+impl Source {
+    /// What a cell costs.
+    #[must_use]
+    pub const fn cost(self) -> Cost {
+        match self {
+            Self::Line | Self::Linear(_) | Self::Limit(_) => Cost::Counted,
+            Self::Roots(_) => Cost::Rooted,
+            Self::Margins(OfMargins::StabilityRadius) => Cost::Proved,
+            Self::Margins(_) => Cost::Searched,
+            Self::Motion(_) | Self::MotionOrCritical(..) => Cost::Followed,
+            Self::Basin(_) => Cost::FollowedOften,
+            Self::Critical(_) => Cost::Critical,
+        }
+    }
+}
+
 /// A number from the roots of a cell. Roots are ranked from the right, with rank 0 for the
 /// rightmost one; conjugate pairs count once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

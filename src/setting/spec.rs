@@ -69,6 +69,7 @@ use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::search::Search;
 use super::simulation::Simulation;
+use super::source::Cost;
 use super::units::Units;
 use super::values::Setting;
 use crate::linear::MarginalTolerance;
@@ -189,10 +190,23 @@ impl SweepSpec {
         many.or_else(|| self.simulation.assumed_start())
     }
 
+    /// What a cell costs: as much as its dearest field.
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        let of_fields = self.fields.iter().map(|field| field.source().cost());
+        of_fields.max().unwrap_or(Cost::Counted)
+    }
+
+    /// Motions of a cell in which motions are followed: one, or one for each start of a share.
+    #[must_use]
+    pub fn motions_per_cell(&self) -> u32 {
+        self.basin.as_ref().map_or(1, |basin| basin.starts)
+    }
+
     /// Whether motions from a start are followed.
     #[must_use]
     pub fn follows_motions(&self) -> bool {
-        self.critical.is_none() && self.fields.iter().any(|f| f.of_motion())
+        self.cost() == Cost::Followed
     }
 }
 

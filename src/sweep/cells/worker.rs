@@ -24,7 +24,7 @@ use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::setting::field::Field;
 use crate::setting::parameter::Parameter;
-use crate::setting::source::{OfLinear, Source};
+use crate::setting::source::{Cost, OfLinear, Source};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
@@ -67,6 +67,8 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
+    /// Whether cells take so long that `stop` is checked between them.
+    slow: bool,
     /// One delay at a time, for systems whose polynomials depend on the delay.
     by_delay: Option<Delays>,
 }
@@ -112,6 +114,7 @@ impl<'p> Worker<'p> {
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
+            slow: plan.spec.cost() > Cost::Rooted,
             by_delay: (!plan.spec.fixed.has_lines()).then(|| Delays::new(&[0.0])),
         }
     }
@@ -170,7 +173,7 @@ impl<'p> Worker<'p> {
                 Err(_) => return self.refuse_line(at),
             };
             self.fill_slowly(&tile.offset, inside, at, of_letter, stop);
-            let slow = of_letter == Some(false) || self.is_slow();
+            let slow = of_letter == Some(false) || self.slow;
             cut_short |= slow && stop.is_set();
         });
         !cut_short
@@ -353,12 +356,6 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Whether cells take so long that `stop` is checked between them.
-    fn is_slow(&self) -> bool {
-        let follows = self.slip.is_some() || self.basin.is_some();
-        self.margins.is_some() || follows || self.vc.is_some()
-    }
-
     /// Computes margins and the fields of motions and of the critical velocity, in a line with
     /// known statuses. Motions need a sliding state.
     fn fill_slowly(
@@ -369,7 +366,7 @@ impl<'p> Worker<'p> {
         of_letter: Option<bool>,
         stop: &Stop,
     ) {
-        if !self.is_slow() {
+        if !self.slow {
             return;
         }
         let index = offset.iter().zip(inside).map(|(o, i)| o + i);

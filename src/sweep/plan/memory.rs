@@ -3,6 +3,7 @@
 
 use super::Plan;
 use crate::setting::parameter::Parameter;
+use crate::setting::source::Cost;
 use crate::setting::values::Setting;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
 
@@ -77,11 +78,10 @@ impl Memory {
 
 /// Bytes of the histories of motions in one thread.
 fn pasts(plan: &Plan) -> u64 {
-    let follows = plan.spec.follows_motions() || plan.spec.basin.is_some();
-    let count = match (plan.spec.critical.is_some(), follows) {
-        (true, _) => PASTS_OF_CRITICAL,
-        (false, true) => PASTS_OF_OUTCOMES,
-        (false, false) => return 0,
+    let count = match plan.spec.cost() {
+        Cost::Critical => PASTS_OF_CRITICAL,
+        Cost::Followed | Cost::FollowedOften => PASTS_OF_OUTCOMES,
+        Cost::Counted | Cost::Rooted | Cost::Searched | Cost::Proved => return 0,
     };
     count * past(longest_delay(plan))
 }

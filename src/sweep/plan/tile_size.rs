@@ -1,7 +1,7 @@
 //! The size of tiles, and where lines of delays may be cut.
 
-use crate::setting::field::Field;
 use crate::setting::search::Protocol;
+use crate::setting::source::Cost;
 use crate::setting::spec::SweepSpec;
 
 /// Cells in a tile, roughly: few enough for a processor's cache, enough to compress and write well.
@@ -26,16 +26,12 @@ const BLOCK_OF_VC: usize = crate::critical::along_delay::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// Cells in a tile, roughly. Tiles take about the same time, whatever is computed.
 pub(super) fn cells_per_tile(spec: &SweepSpec) -> usize {
-    if spec.critical.is_some() {
-        CELLS_PER_CRITICAL_TILE
-    } else if let Some(basin) = &spec.basin {
-        (MOTIONS_PER_TILE / basin.starts as usize).max(1)
-    } else if spec.follows_motions() || proves_radii(spec) {
-        CELLS_PER_MOTION_TILE
-    } else if follows_roots(spec) || has_margins(spec) {
-        CELLS_PER_ROOT_TILE
-    } else {
-        CELLS_PER_TILE
+    match spec.cost() {
+        Cost::Counted => CELLS_PER_TILE,
+        Cost::Rooted | Cost::Searched => CELLS_PER_ROOT_TILE,
+        Cost::Proved | Cost::Followed => CELLS_PER_MOTION_TILE,
+        Cost::FollowedOften => (MOTIONS_PER_TILE / spec.motions_per_cell() as usize).max(1),
+        Cost::Critical => CELLS_PER_CRITICAL_TILE,
     }
 }
 
@@ -43,26 +39,14 @@ pub(super) fn cells_per_tile(spec: &SweepSpec) -> usize {
 /// delay do so only within a block. Motions, and control switched on in stick-slip, do not depend
 /// on the previous delay.
 pub(super) fn block(spec: &SweepSpec) -> usize {
-    let critical = spec.critical.map(|search| search.protocol);
-    match critical {
-        _ if follows_roots(spec) => BLOCK_OF_DELAYS,
+    let rooted = spec.fields.iter().any(|f| f.roots_needed() > 0);
+    match spec.critical.map(|search| search.protocol) {
+        _ if rooted => BLOCK_OF_DELAYS,
         Some(Protocol::Follow) => BLOCK_OF_VC,
         Some(Protocol::SwitchOn(_)) => 1,
-        None if spec.follows_motions() || spec.basin.is_some() || has_margins(spec) => 1,
+        None if spec.cost() > Cost::Rooted => 1,
         None => BLOCK_OF_DELAYS,
     }
-}
-
-fn follows_roots(spec: &SweepSpec) -> bool {
-    spec.fields.iter().any(|f| f.roots_needed() > 0)
-}
-
-fn has_margins(spec: &SweepSpec) -> bool {
-    spec.fields.iter().any(|f| f.of_margins())
-}
-
-fn proves_radii(spec: &SweepSpec) -> bool {
-    spec.fields.contains(&Field::StabilityRadius)
 }
 
 /// The shape of tiles: whole lines where they fit, else whole blocks of `block` delays; then as
