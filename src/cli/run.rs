@@ -327,7 +327,7 @@ fn failure(error: RunError<StoreError>, path: &Path, fresh: bool, watched: &Watc
         }
         RunError::Sink(error) => error.into(),
         RunError::Model(error) => error.into(),
-        error @ (RunError::Threads { .. } | RunError::ThreadLost) => {
+        error @ (RunError::Needs(_) | RunError::Threads { .. } | RunError::ThreadLost) => {
             Failure::failed(error.to_string())
         }
     }

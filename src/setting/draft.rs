@@ -1,12 +1,8 @@
 //! Reads a sweep file.
 //!
-//! - `beyond`: checks a sweep with memory, latency, lags or a state of friction
 //! - `checks`: checks that the entries of a sweep file are consistent
-//! - `of_system`: checks that a sweep of a system is consistent
 
-mod beyond;
 mod checks;
-mod of_system;
 
 use std::ops::Range;
 
@@ -15,7 +11,7 @@ use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
 use super::keys::{SWEEP, names};
-use super::limit_spec::LimitDraft;
+use super::limit_spec;
 use super::map_names::MOST_AXES;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
@@ -60,7 +56,9 @@ impl SweepSpec {
             draft.system = Some(SystemDraft::read(system, text)?);
         }
         for entry in all {
-            draft.limit.note_key(&entry);
+            if draft.foreign.is_none() && !limit_spec::KEYS.contains(&entry.key) {
+                draft.foreign = Some((entry.key.to_owned(), entry.key_span.clone()));
+            }
             if draft.system.is_some() {
                 SystemDraft::check_key(&entry)?;
             }
@@ -110,17 +108,13 @@ struct Draft {
     /// The field that pictures show, and its place.
     picture: Option<(Field, Range<usize>)>,
     is_limit: bool,
-    limit: LimitDraft,
+    /// The first key that is not allowed in the limit of a short delay.
+    foreign: Option<(String, Range<usize>)>,
+    /// The fields in the order of the file, and their places.
+    asked: Vec<Field>,
+    places: Vec<Range<usize>>,
     fields: Option<Vec<Field>>,
-    /// The place of the first field of motions, if there is one.
-    motion_place: Option<Range<usize>>,
-    /// The name and place of the first of these fields that depends on the start of a motion.
-    start_place: Option<(&'static str, Range<usize>)>,
-    /// The name and place of the first field over many starts, if there is one.
-    basin_place: Option<(&'static str, Range<usize>)>,
     basin: BasinKeys,
-    /// The place of the first field of the critical velocity, if there is one.
-    vc_place: Option<Range<usize>>,
     vc: VcKeys,
     simulation: Simulation,
     simulation_place: Option<Range<usize>>,
@@ -141,25 +135,9 @@ struct Draft {
 impl Draft {
     fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
         self.fields = Some(read_fields(fields)?);
-        self.limit.note_fields(fields)?;
         for element in fields.array()? {
-            let Some(field) = Field::from_name(element.string()?) else {
-                continue;
-            };
-            let place = || Some(element.span.clone());
-            if field.of_vc() {
-                self.vc_place = self.vc_place.take().or_else(place);
-            }
-            if field.of_motion() {
-                self.motion_place = self.motion_place.take().or_else(place);
-            }
-            let named = || Some((field.name(), element.span.clone()));
-            if field.of_motion() && field != Field::Outcome {
-                self.start_place = self.start_place.take().or_else(named);
-            }
-            if field.of_basin() {
-                self.basin_place = self.basin_place.take().or_else(named);
-            }
+            self.asked.push(read_field(&element)?);
+            self.places.push(element.span);
         }
         Ok(())
     }
@@ -229,17 +207,14 @@ impl Draft {
         let (fixed, critical, default_fields) = if let Some(system) = &self.system {
             (self.check_system(system)?, None, vec![Field::NUnstable])
         } else if self.is_limit {
-            (
-                self.limit.check(&self.given, self.axes_place.as_ref())?,
-                None,
-                Field::all_of_limit().collect(),
-            )
+            (self.check_limit()?, None, Field::all_of_limit().collect())
         } else {
             let (fixed, critical) = self.check()?;
             (fixed, critical, vec![Field::NUnstable])
         };
-        let mut simulation = self.simulation;
-        if critical.is_none() && self.motion_place.is_some() && !self.given.has_start() {
+        let basin = self.asks(Field::of_basin).then(|| self.basin.basin());
+        let mut simulation = self.simulation.clone();
+        if critical.is_none() && self.asks(Field::of_motion) && !self.given.has_start() {
             simulation.disturbance = DISTURBED;
         }
         let mut fields = self.fields.unwrap_or(default_fields);
@@ -248,10 +223,6 @@ impl Draft {
             fields.push(Field::Reason);
             fields.sort_unstable();
         }
-        let basin = match &self.basin_place {
-            Some(_) => Some(self.basin.basin()?),
-            None => None,
-        };
         Ok(SweepSpec {
             title: self.title,
             picture: picture(self.picture, &fields)?,
@@ -264,7 +235,7 @@ impl Draft {
             best: self.best.is_some(),
             tolerance: self.tolerance,
             simulation,
-            basin,
+            basin: basin.transpose()?,
             critical,
             units: self.units,
             text: text.to_owned(),

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use super::friction_table::GivenTable;
 use super::keys::{FRICTION_TABLE, UNITS, names};
-use super::law_kind::{Formula, LawKind, NO_MOTIONS};
+use super::law_kind::{Formula, LawKind};
+use super::needs::{At, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::units::Units;
 use super::values::{GivenError, Setting};
@@ -87,18 +88,7 @@ impl GivenParameters {
 
     /// Checks that a motion starts in a state or at a phase, not both.
     pub(super) fn check_start(&self) -> Result<(), SpecError> {
-        let state = [Parameter::XDot0, Parameter::A0];
-        let state = state.into_iter().find(|p| self.place(*p).is_some());
-        match (self.place(Parameter::SwitchOnPhase), state) {
-            (Some(place), Some(state)) => {
-                let message = format!("switch_on_phase: {} is given as well", state.name());
-                Err(SpecError::at(place.clone(), message).help(
-                    "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip \
-                    (switch_on_phase), not both",
-                ))
-            }
-            _ => Ok(()),
-        }
+        self.met(two_starts(|parameter| self.place(parameter).is_some()))
     }
 
     fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
@@ -167,12 +157,23 @@ impl GivenParameters {
 
     /// Checks that motions can be followed under the law, as far as the law alone decides this.
     pub(super) fn check_motions(&self) -> Result<(), SpecError> {
-        match &self.law {
-            Some((law, place)) if law.has_state() => {
-                let message = format!("the {} law has no motions here", law.name());
-                Err(SpecError::at(place.clone(), message).help(NO_MOTIONS))
-            }
-            _ => Ok(()),
+        self.met(self.law.as_ref().and_then(|(law, _)| no_motions(law)))
+    }
+
+    fn met(&self, unmet: Option<Unmet>) -> Result<(), SpecError> {
+        unmet.map_or(Ok(()), |unmet| Err(self.unmet(unmet, None)))
+    }
+
+    /// The error of a need that is not met, at its place. `field` is the place of the field.
+    pub(super) fn unmet(&self, unmet: Unmet, field: Option<&Range<usize>>) -> SpecError {
+        let place = match unmet.at {
+            At::Field => field,
+            At::Law => self.law_place(),
+            At::Parameter(parameter) => self.place(parameter).or(field),
+        };
+        SpecError {
+            span: place.cloned(),
+            ..unmet.error
         }
     }
 

@@ -17,6 +17,7 @@
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
 //! - [`linear_model`]: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
+//! - `needs`: what fields need of a sweep: a row for each need
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
 //! - `point_file`: a point of parameter space as text
@@ -30,7 +31,7 @@
 //! - `spec_values`: the values of a sweep file's keys
 //! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
 //!   values of them
-//! - `system_draft`: the system of a sweep: its parameters, and what it cannot have
+//! - `system_draft`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `table_file`: a sweep or case file with the contents of the files that it names
 //! - `units`: the units of a sweep
 //! - `values`: one value for every parameter, and which of them must be given
@@ -52,6 +53,7 @@ pub mod law_kind;
 mod limit_spec;
 pub mod linear_model;
 pub mod map_names;
+pub(crate) mod needs;
 mod own_system;
 pub mod parameter;
 pub mod point_file;

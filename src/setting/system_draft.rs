@@ -1,11 +1,9 @@
-//! The system of a sweep: its parameters, and what it cannot have.
+//! The system of a sweep: its parameters, and the keys that it cannot have.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::field::Field;
 use super::quantity::Quantity;
-use super::source::{OfLinear, OfMargins, OfRoots, Source};
 use super::system::{SystemModel, shipped};
 use super::values::Setting;
 use crate::text::nearest::did_you_mean;
@@ -92,36 +90,5 @@ impl SystemDraft {
             ));
         }
         Ok(())
-    }
-}
-
-/// Why a field is not available for a system, and a suggestion.
-pub(super) fn refused(field: Field, model: &SystemModel) -> Option<(&'static str, &'static str)> {
-    const OTHERS: &str = "n_unstable, abscissa, frequency, relaxation_time, reason and others are \
-        of any system";
-    match field.source() {
-        Source::Line if field == Field::DelayMargin && model.depends_on_delay() => Some((
-            "it needs a line of delays, and P or Q depends on tau",
-            "n_unstable and the roots are counted delay by delay",
-        )),
-        Source::Roots(OfRoots::Derivative(_)) => {
-            Some(("it is known of the letter's parameters alone", OTHERS))
-        }
-        Source::Linear(OfLinear::StiffnessRatio) => {
-            Some(("it is of the rate-and-state law", OTHERS))
-        }
-        Source::Margins(OfMargins::Latency) if !model.is_feedback() => Some((
-            "the system has no latency",
-            "a system of B and A has one, one of P and Q has not",
-        )),
-        Source::Line
-        | Source::Roots(_)
-        | Source::Linear(_)
-        | Source::Margins(OfMargins::Latency) => None,
-        Source::Margins(_) => Some(("it needs the block on its spring", OTHERS)),
-        _ => Some((
-            "it needs the block on its spring; a system from a file has no motions",
-            OTHERS,
-        )),
     }
 }

@@ -21,6 +21,7 @@ pub use super::sink::{Computed, Encode, Sink};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::sweep::cells::best_planes::{best_of_plane, best_plane};
+use crate::text::SpecError;
 
 /// Pieces that may wait for the sink, per thread.
 const PIECES_WAITING: usize = 2;
@@ -41,6 +42,9 @@ pub enum RunError<E> {
     /// A parameter is outside the model's range.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A field lacks what it needs of its setting.
+    #[error(transparent)]
+    Needs(#[from] SpecError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

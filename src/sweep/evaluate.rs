@@ -12,6 +12,7 @@ use crate::model::stop::Stop;
 use crate::setting::axis::Axis;
 use crate::setting::basin::Basin;
 use crate::setting::field::Field;
+use crate::setting::needs::check_kinds;
 use crate::setting::parameter::Parameter;
 use crate::setting::search::{Protocol, Search};
 use crate::setting::simulation::{DISTURBED, Simulation};
@@ -40,10 +41,7 @@ impl Wanted {
     /// # Errors
     /// Refuses fields of the limit of a short delay, which has no delays.
     pub fn of(fields: &[Field]) -> Result<Self, SpecError> {
-        if let Some(field) = fields.iter().find(|field| field.of_limit()) {
-            let message = format!("{} is a field of protocol = \"limit\"", field.name());
-            return Err(SpecError::whole(message));
-        }
+        check_kinds(fields)?;
         Ok(Self {
             fields: Field::with_bounds(fields.to_vec()),
             tolerance: MarginalTolerance::default(),
@@ -130,15 +128,20 @@ pub struct Points<'a> {
 /// ```
 ///
 /// # Errors
-/// When a delay is outside its range, it is stopped, or the threads cannot be started.
+/// When a delay is outside its range, a setting lacks what a field needs, in the words of sweep
+/// files, it is stopped, or the threads cannot be started.
 pub fn evaluate(
     points: &[Points],
     wanted: &Wanted,
     threads: usize,
     attended: Attended,
 ) -> Result<TileBuffers, RunError<Infallible>> {
-    for delay in points.iter().flat_map(|points| points.delays) {
-        Parameter::Tau.check(*delay)?;
+    for points in points {
+        for delay in points.delays {
+            Parameter::Tau.check(*delay)?;
+        }
+        let delays = points.delays.to_vec();
+        wanted.sweep(points.setting, along(delays)).check_needs()?;
     }
     let cells = |points: &Points| points.delays.len() as u64;
     let work = |points: &Points, stop: &Stop| at_setting(points, wanted, stop);
@@ -161,12 +164,8 @@ fn at_setting(points: &Points, wanted: &Wanted, stop: &Stop) -> Option<(TileBuff
     if delays.is_empty() {
         return Some((cells, places));
     }
-    let axis = Axis {
-        parameter: Parameter::Tau.into(),
-        values: delays,
-    };
     // No list in memory is so long that this fails: it would need two million tiles.
-    let plan = Plan::new(wanted.sweep(points.setting, axis)).ok()?;
+    let plan = Plan::new(wanted.sweep(points.setting, along(delays))).ok()?;
     let mut worker = Worker::new(&plan);
     for number in 0..plan.tiles.len() {
         let tile = plan.tiles.tile(number);
@@ -177,6 +176,13 @@ fn at_setting(points: &Points, wanted: &Wanted, stop: &Stop) -> Option<(TileBuff
         cells.take_cells(first..first + count, &worker.buffers, 0..count);
     }
     Some((cells, places))
+}
+
+fn along(delays: Vec<f64>) -> Axis {
+    Axis {
+        parameter: Parameter::Tau.into(),
+        values: delays,
+    }
 }
 
 /// These delays in increasing order, each once, and the place of each of them there.

@@ -1,13 +1,15 @@
 //! Fields at any points, against the cells of sweeps.
 
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::every_kind::{SWEEPS, plan};
-use slipmap::setting::Field;
+use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::{Field, Parameter, Setting};
 use slipmap::sweep::cells::buffers::TileBuffers;
 use slipmap::sweep::evaluate::{Points, Wanted, evaluate};
-use slipmap::sweep::events::Attended;
+use slipmap::sweep::events::{Attended, Event, Observer};
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::{Plan, RunError};
 
@@ -106,4 +108,136 @@ fn an_evaluation_is_stopped_and_refuses_delays() {
     stop.store(true, Ordering::Relaxed);
     assert!(matches!(at(&[1.0]), Err(RunError::Interrupted)));
     assert!(Wanted::of(&[Field::all_of_limit().next().unwrap()]).is_err());
+}
+
+/// The error of fields that are evaluated at one delay.
+fn refusal(fields: &[Field], setting: &Setting, delay: f64) -> String {
+    let delays = &[delay];
+    let wanted = Wanted::of(fields).unwrap();
+    let points = [Points { setting, delays }];
+    let refused = evaluate(&points, &wanted, 1, Attended::silently(&Arc::default()));
+    let refused = refused.unwrap_err();
+    assert!(matches!(refused, RunError::Needs(_)), "{refused}");
+    refused.to_string()
+}
+
+fn check_refusal(field: Field, setting: &Setting, delay: f64, says: &str) {
+    let refused = refusal(&[field], setting, delay);
+    assert!(refused.contains(says), "{refused}");
+}
+
+/// A setting without its delay.
+fn setting(law: Option<Formula>, numbers: &[(&'static str, f64)]) -> Setting {
+    let law = law.map(LawKind::Formula);
+    Setting::checked(numbers.iter().copied(), law, &TAU).unwrap()
+}
+
+/// What a sweep file refuses at a field is refused at a point in the same words.
+#[test]
+fn fields_are_refused_where_sweep_files_refuse_them() {
+    let block = setting(None, &[("mu_prime", -0.3), ("alpha_v", -0.5)]);
+    check_refusal(Field::Outcome, &block, 1.0, "motions stick and slip by it");
+    check_refusal(
+        Field::Vc,
+        &block,
+        1.0,
+        "the critical velocity depends on the whole",
+    );
+    check_refusal(
+        Field::StiffnessRatio,
+        &block,
+        1.0,
+        "is of the rate-and-state law",
+    );
+    let coulomb = [
+        ("mu0", 0.5),
+        ("v0", 0.1),
+        ("alpha_v", -0.5),
+        ("load_lag", 0.0),
+    ];
+    let mut law = setting(Some(Formula::Coulomb), &coulomb);
+    check_refusal(Field::Outcome, &law, 0.0, "tau = 0 is outside its range");
+    law.set(Parameter::LoadLag, 0.2);
+    check_refusal(Field::Outcome, &law, 1.0, "load_lag is not known");
+    law.set(Parameter::LoadLag, 0.0);
+    law.set(Parameter::XDot0, 0.2);
+    check_refusal(Field::BasinShare, &law, 1.0, "x_dot0 says one start");
+    let both = refusal(&[Field::Outcome, Field::SettleTime, Field::Vc], &law, 0.0);
+    assert!(
+        both.starts_with("settle_time cannot stand beside"),
+        "{both}"
+    );
+    law.set(Parameter::V0, f64::NAN);
+    check_refusal(Field::NUnstable, &law, 1.0, "v0 is not given");
+    let system = plan(SWEEPS[6]).setting(&[0, 0]);
+    check_refusal(
+        Field::PhaseMargin,
+        &system,
+        1.0,
+        "it needs the block on its spring",
+    );
+    check_refusal(
+        Field::Vc,
+        &system,
+        1.0,
+        "a system from a file has no motions",
+    );
+}
+
+const TAU: [Parameter; 1] = [Parameter::Tau];
+
+/// An observer that sets the stop once something is done.
+#[derive(Default)]
+struct Stopping {
+    stop: Arc<AtomicBool>,
+    at_once: bool,
+    cells: Cell<u64>,
+}
+
+impl Observer for Stopping {
+    fn event(&self, event: &Event) {
+        if let Event::PieceDone { cells } = event {
+            self.cells.set(self.cells.get() + cells);
+            self.stop.store(self.at_once, Ordering::Relaxed);
+        }
+    }
+}
+
+/// The observer hears of every point, and may stop the evaluation from there.
+#[test]
+fn an_evaluation_is_observed_and_stopped_on_the_way() {
+    let setting = plan(SWEEPS[5]).setting(&[0, 0]);
+    let delays: Vec<f64> = (0..40).map(|i| 4.0 + f64::from(i) * 0.01).collect();
+    let points = vec![
+        Points {
+            setting: &setting,
+            delays: &delays,
+        };
+        200
+    ];
+    for (field, points) in [
+        (Field::NUnstable, &points[..3]),
+        (Field::Outcome, &points[..]),
+    ] {
+        let wanted = Wanted::of(&[field]).unwrap();
+        for threads in [1, 2] {
+            let observer = Stopping {
+                at_once: field == Field::Outcome,
+                ..Stopping::default()
+            };
+            let attended = Attended {
+                observer: &observer,
+                stop: &observer.stop,
+            };
+            let found = evaluate(points, &wanted, threads, attended);
+            let all = 40 * points.len() as u64;
+            if observer.at_once {
+                assert!(matches!(found, Err(RunError::Interrupted)));
+                assert!(observer.cells.get() < all);
+            } else {
+                assert_eq!(found.unwrap().status.len() as u64, all);
+                assert_eq!(observer.cells.get(), all);
+            }
+        }
+    }
 }

@@ -1,0 +1,392 @@
+//! What fields need of a sweep: a row for each need, with its message.
+//!
+//! Sweep files ask the rows in stages, between other checks; fields at any points ask all of them.
+
+use super::axis::Axis;
+use super::field::Field;
+use super::law_kind::{Formula, LawKind, NO_MOTIONS};
+use super::parameter::Parameter;
+use super::search::LIMIT;
+use super::simulation::NOT_IN_MOTIONS;
+use super::source::{OfLinear, OfMargins, OfRoots, Source};
+use super::spec::{SweepSpec, most};
+use super::system::SystemModel;
+use super::values::{GivenError, Setting};
+use crate::text::SpecError;
+
+/// When a need is checked. Each stage takes for granted that the needs of those before it are met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// The block, or the limit of a short delay.
+    Protocol,
+    /// The linear model and the friction law.
+    Model,
+    /// The other fields, and whether there is a law.
+    Company,
+    /// The values of parameters.
+    Values,
+}
+
+/// Fields, and where they are to be computed.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<'a> {
+    /// The fields, in the order of the file.
+    pub fields: &'a [Field],
+    /// The parameters that are no axes.
+    pub fixed: &'a Setting,
+    pub axes: &'a [Axis],
+    /// Whether it is the limit of a short delay.
+    pub limit: bool,
+    /// Whether curves or best settings are asked for, which are about one v0.
+    pub planes: bool,
+}
+
+/// A need that is not met.
+pub(super) struct Unmet {
+    pub at: At,
+    /// The error, without a place.
+    pub error: SpecError,
+}
+
+/// What an unmet need is reported at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum At {
+    /// The field.
+    Field,
+    /// The name of the friction law.
+    Law,
+    /// The parameter, or the field where it is not given.
+    Parameter(Parameter),
+}
+
+impl At {
+    fn refuse(self, message: impl Into<String>, help: impl Into<String>) -> Unmet {
+        Unmet {
+            at: self,
+            error: SpecError::whole(message).help(help),
+        }
+    }
+}
+
+/// A need of some fields.
+struct Need {
+    stage: Stage,
+    of: fn(Field) -> bool,
+    /// The error where it is not met.
+    unmet: fn(&Asked, Field) -> Option<Unmet>,
+}
+
+/// The needs. Of several unmet ones the first is reported, at the first field that has it.
+const NEEDS: [Need; 16] = [
+    Need {
+        stage: Stage::Protocol,
+        of: Field::of_limit,
+        unmet: |asked, field| (!asked.limit).then(|| of_limit(field)),
+    },
+    Need {
+        stage: Stage::Protocol,
+        of: |field| !field.of_limit(),
+        unmet: |asked, field| asked.limit.then(|| no_meaning(field.name())),
+    },
+    Need {
+        stage: Stage::Model,
+        of: |_| true,
+        unmet: |asked, field| not_of_system(field, asked.fixed.system()?),
+    },
+    Need {
+        stage: Stage::Model,
+        of: of_motions,
+        unmet: |asked, _| no_motions(asked.fixed.law()?),
+    },
+    Need {
+        stage: Stage::Model,
+        of: of_motions,
+        unmet: |asked, _| {
+            let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_MOTIONS)?;
+            let message = format!("{} is not known to motions", parameter.name());
+            Some(At::Parameter(parameter).refuse(message, LINEAR))
+        },
+    },
+    Need {
+        stage: Stage::Model,
+        of: |field| field.of_margins() && field != Field::LatencyMargin,
+        unmet: not_by_slope,
+    },
+    Need {
+        stage: Stage::Model,
+        of: |field| field == Field::DAbscissaDMuPrime,
+        unmet: not_by_slope,
+    },
+    Need {
+        stage: Stage::Model,
+        of: |field| field == Field::StiffnessRatio,
+        unmet: |asked, field| {
+            let law = Formula::RateAndState.name();
+            let message = format!("{} is of the {law} law", field.name());
+            let help = format!("give [friction] law = \"{law}\", and v0");
+            let without = asked.fixed.rate_and_state().is_none();
+            without.then(|| At::Field.refuse(message, help))
+        },
+    },
+    Need {
+        stage: Stage::Company,
+        of: Field::of_basin,
+        unmet: |asked, field| {
+            let others = match (asked.any(Field::of_vc), asked.any(Field::of_motion)) {
+                (true, _) => "fields of the critical velocity",
+                (false, true) => "fields of one motion",
+                (false, false) => return None,
+            };
+            Some(At::Field.refuse(
+                format!("{} cannot stand beside {others}", field.name()),
+                "it is about motions from many starts: make a sweep of its own for it; fields of \
+                 linear stability can stand beside it",
+            ))
+        },
+    },
+    Need {
+        stage: Stage::Company,
+        of: Field::of_vc,
+        unmet: |asked, _| asked.without_law("the critical velocity depends on the whole of it"),
+    },
+    Need {
+        stage: Stage::Company,
+        of: of_motions,
+        unmet: |asked, _| asked.without_law("motions stick and slip by it"),
+    },
+    Need {
+        stage: Stage::Company,
+        of: |field| field.of_motion() && field != Field::Outcome,
+        unmet: |asked, field| {
+            let beside = format!("{} cannot stand beside", field.name());
+            asked.any(Field::of_vc).then(|| {
+                At::Field.refuse(
+                    format!("{beside} fields of the critical velocity"),
+                    "it is about a motion from one start: make a sweep of its own for it; outcome \
+                     can stand in both",
+                )
+            })
+        },
+    },
+    Need {
+        stage: Stage::Values,
+        of: |_| true,
+        unmet: |asked, _| {
+            let (error, law) = (GivenError::Missing(Parameter::V0), asked.fixed.law()?);
+            let [message, help] = [
+                error.message(Some(law), Parameter::key),
+                error.help(Parameter::key),
+            ];
+            let missing = asked.needs_v0() && !asked.has(Parameter::V0);
+            missing.then(|| At::Law.refuse(message, help))
+        },
+    },
+    Need {
+        stage: Stage::Values,
+        of: Field::of_motion,
+        unmet: |asked, _| two_starts(|parameter| asked.has(parameter)),
+    },
+    Need {
+        stage: Stage::Values,
+        of: of_motions,
+        unmet: |asked, _| {
+            let gains = [Parameter::AlphaV, Parameter::AlphaN];
+            let acts = gains
+                .iter()
+                .any(|&p| asked.values(p).any(|gain| gain != 0.0));
+            let at_once = || asked.values(Parameter::Tau).any(|tau| tau == 0.0);
+            (acts && at_once()).then(|| Unmet {
+                at: At::Parameter(Parameter::Tau),
+                error: SpecError::whole(
+                    "tau = 0 is outside its range: greater than 0 where gains act and motions are \
+                     followed",
+                ),
+            })
+        },
+    },
+    Need {
+        stage: Stage::Values,
+        of: Field::of_basin,
+        unmet: |asked, field| {
+            let mut start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+            let parameter = start.find(|&p| asked.has(p))?;
+            Some(At::Parameter(parameter).refuse(
+                format!("{} says one start", parameter.name()),
+                format!(
+                    "{} is of many: [basin] says their ranges, or over = \"phase\"",
+                    field.name()
+                ),
+            ))
+        },
+    },
+];
+
+const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
+
+/// The first need of a stage that is not met, with the field.
+pub(super) fn unmet(asked: &Asked, stage: Stage) -> Option<(Field, Unmet)> {
+    let needs = NEEDS.iter().filter(|need| need.stage == stage);
+    needs.into_iter().find_map(|need| {
+        let mut fields = asked.fields.iter().filter(|field| (need.of)(**field));
+        fields.find_map(|&field| Some((field, (need.unmet)(asked, field)?)))
+    })
+}
+
+/// Checks that these are fields of a cell at a delay.
+///
+/// # Errors
+/// Names the first field of the limit of a short delay.
+pub(crate) fn check_kinds(fields: &[Field]) -> Result<(), SpecError> {
+    match fields.iter().find(|field| field.of_limit()) {
+        Some(field) => Err(of_limit(*field).error),
+        None => Ok(()),
+    }
+}
+
+impl SweepSpec {
+    /// Checks that the sweep has all that its fields need.
+    ///
+    /// # Errors
+    /// In the words of sweep files, without a place.
+    pub fn check_needs(&self) -> Result<(), SpecError> {
+        let asked = Asked {
+            fields: &self.fields,
+            fixed: &self.fixed,
+            axes: &self.axes,
+            limit: self.limit,
+            planes: self.best
+                || self.boundaries == Some(true)
+                || !self.degrees_of_stability.is_empty(),
+        };
+        let stages = [Stage::Protocol, Stage::Model, Stage::Company, Stage::Values];
+        match stages.into_iter().find_map(|stage| unmet(&asked, stage)) {
+            Some((_, unmet)) => Err(unmet.error),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Asked<'_> {
+    fn any(&self, of: fn(Field) -> bool) -> bool {
+        self.fields.iter().any(|&field| of(field))
+    }
+
+    /// The values of a parameter: those of its axis, or the fixed one.
+    pub(super) fn values(&self, parameter: Parameter) -> impl Iterator<Item = f64> {
+        let axis = self.axes.iter().find(|axis| axis.parameter == parameter);
+        let fixed = axis.is_none().then(|| self.fixed.get(parameter));
+        axis.into_iter()
+            .flat_map(|axis| &axis.values)
+            .copied()
+            .chain(fixed)
+    }
+
+    /// Whether a parameter without a default has a value.
+    fn has(&self, parameter: Parameter) -> bool {
+        self.values(parameter).any(|value| !value.is_nan())
+    }
+
+    /// Whether anything depends on v0. A law without v0 still has a critical velocity.
+    pub(super) fn needs_v0(&self) -> bool {
+        let about_v0 = |field: Field| field.of_sliding() || field == Field::Regime;
+        !self.any(Field::of_vc) || self.planes || self.any(about_v0)
+    }
+
+    /// The error of a field that needs a friction law, which is not there.
+    fn without_law(&self, why: &str) -> Option<Unmet> {
+        let help = match self.needs_v0() {
+            true => "give [friction] and v0 instead of mu_prime and mu_k",
+            false => "give [friction] instead of mu_prime and mu_k",
+        };
+        let message = format!("this field needs a friction law: {why}");
+        let without = self.fixed.law().is_none();
+        without.then(|| At::Field.refuse(message, help))
+    }
+}
+
+/// Whether motions are followed for the field.
+fn of_motions(field: Field) -> bool {
+    field.of_motion() || field.of_basin() || field.of_vc()
+}
+
+/// The error of a law that has no motions.
+pub(super) fn no_motions(law: &LawKind) -> Option<Unmet> {
+    let message = format!("the {} law has no motions here", law.name());
+    law.has_state().then(|| At::Law.refuse(message, NO_MOTIONS))
+}
+
+/// The error of a motion that starts in a state and at a phase.
+pub(super) fn two_starts(has: impl Fn(Parameter) -> bool) -> Option<Unmet> {
+    let phase = Parameter::SwitchOnPhase;
+    let state = [Parameter::XDot0, Parameter::A0]
+        .into_iter()
+        .find(|&p| has(p));
+    let state = state.filter(|_| has(phase))?;
+    Some(At::Parameter(phase).refuse(
+        format!("{}: {} is given as well", phase.name(), state.name()),
+        "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip (switch_on_phase), \
+         not both",
+    ))
+}
+
+/// The error of a field that takes friction to be a function of the velocity, under a law with a
+/// state: there the slope does not describe friction completely.
+fn not_by_slope(asked: &Asked, field: Field) -> Option<Unmet> {
+    let law = asked.fixed.law().filter(|law| law.has_state())?;
+    let law = format!("the {} law", law.name());
+    Some(At::Field.refuse(
+        format!("{} cannot be had with {law}", field.name()),
+        format!("leave it out, or {law}; {LINEAR}"),
+    ))
+}
+
+fn of_limit(field: Field) -> Unmet {
+    At::Field.refuse(
+        format!("{} is a field of protocol = \"{LIMIT}\"", field.name()),
+        "protocol = \"limit\" asks for v_c as the delay vanishes; its parameters are gamma and \
+         mu_ratio",
+    )
+}
+
+/// The error of a name that a sweep of the limit of a short delay cannot have.
+pub(super) fn no_meaning(name: &str) -> Unmet {
+    let names: Vec<_> = Field::all_of_limit().map(Field::name).collect();
+    let fields = names.join(", ");
+    At::Field.refuse(
+        format!("{name} has no meaning with protocol = \"{LIMIT}\""),
+        format!(
+            "the limit is Coulomb friction under load control as the delay vanishes; all it takes \
+             is gamma, mu_ratio and the fields {fields}"
+        ),
+    )
+}
+
+/// The error of a field that a system from a file does not have.
+fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
+    const OTHERS: &str = "n_unstable, abscissa, frequency, relaxation_time, reason and others are \
+        of any system";
+    let (why, help) = match field.source() {
+        Source::Line if field == Field::DelayMargin && model.depends_on_delay() => (
+            "it needs a line of delays, and P or Q depends on tau",
+            "n_unstable and the roots are counted delay by delay",
+        ),
+        Source::Roots(OfRoots::Derivative(_)) => {
+            ("it is known of the letter's parameters alone", OTHERS)
+        }
+        Source::Linear(OfLinear::StiffnessRatio) => ("it is of the rate-and-state law", OTHERS),
+        Source::Margins(OfMargins::Latency) if !model.is_feedback() => (
+            "the system has no latency",
+            "a system of B and A has one, one of P and Q has not",
+        ),
+        Source::Line
+        | Source::Roots(_)
+        | Source::Linear(_)
+        | Source::Margins(OfMargins::Latency) => return None,
+        Source::Margins(_) => ("it needs the block on its spring", OTHERS),
+        _ => (
+            "it needs the block on its spring; a system from a file has no motions",
+            OTHERS,
+        ),
+    };
+    Some(At::Field.refuse(format!("{}: {why}", field.name()), help))
+}
