@@ -175,60 +175,38 @@ fn stuck(setting: &Setting) -> Result<f64, ModelError> {
     Ok(mu_s * oscillator.normal_load() / oscillator.stiffness())
 }
 
-/// The table `[basin]`, with the places of the keys that must be consistent.
-#[derive(Debug, Default)]
+/// The table `[basin]`, with the last key that has no meaning over phases.
+#[derive(Default)]
 pub(super) struct BasinKeys {
     basin: Basin,
-    place: Option<Range<usize>>,
-    box_place: Option<(Parameter, Range<usize>)>,
+    box_place: Option<(String, Range<usize>)>,
 }
 
 impl BasinKeys {
     /// Reads the table.
-    pub(super) fn read(&mut self, table: &Entry) -> Result<(), SpecError> {
-        self.place = Some(table.key_span.clone());
-        for entry in table.table()? {
-            match entry.key {
-                "over" => self.basin.over = read_over(&entry)?,
-                "starts" => {
-                    let starts = Basin::check_starts(entry.whole()?);
-                    self.basin.starts = starts.map_err(|why| entry.error(why))?;
-                }
-                "x_dot0" => self.basin.x_dot0 = Some(self.read_box(&entry, Parameter::XDot0)?),
-                "a0" => self.basin.a0 = Some(self.read_box(&entry, Parameter::A0)?),
-                _ => return Err(entry.unknown(&names(&BASIN))),
-            }
-        }
-        Ok(())
-    }
-
-    fn read_box(&mut self, entry: &Entry, parameter: Parameter) -> Result<[f64; 2], SpecError> {
-        self.box_place = Some((parameter, entry.key_span.clone()));
-        let (mut from, mut to) = (None, None);
-        for end in entry.table()? {
-            match end.key {
-                "from" => from = Some(end.number()?),
-                "to" => to = Some(end.number()?),
-                _ => return Err(end.unknown(&ENDS)),
-            }
-        }
-        let missing = |name| entry.error(format!("{name} is missing"));
-        let from = from.ok_or_else(|| missing("from"))?;
-        let to = to.ok_or_else(|| missing("to"))?;
-        Basin::check_range(parameter, [from, to])
-            .map_err(|why| SpecError::at(entry.span.clone(), why))
-    }
-
-    /// The place of the table, if there is one.
-    pub(super) fn place(&self) -> Option<&Range<usize>> {
-        self.place.as_ref()
+    pub(super) fn read(table: &Entry) -> Result<Self, SpecError> {
+        let mut table = table.document(names(&BASIN))?;
+        let default = Basin::default();
+        let basin = Basin {
+            over: table.take("over", read_over).unwrap_or(default.over),
+            starts: table.take("starts", read_starts).unwrap_or(default.starts),
+            x_dot0: table.take("x_dot0", |entry| read_box(entry, Parameter::XDot0)),
+            a0: table.take("a0", |entry| read_box(entry, Parameter::A0)),
+        };
+        table.finish()?;
+        let mut keys = table.keys().rev();
+        let last = keys.find(|(key, _)| ["x_dot0", "a0"].contains(key));
+        Ok(Self {
+            basin,
+            box_place: last.map(|(key, place)| (key.to_owned(), place.clone())),
+        })
     }
 
     /// The starts that the table describes.
     pub(super) fn basin(&self) -> Result<Basin, SpecError> {
         match (&self.box_place, self.basin.over) {
-            (Some((parameter, place)), Over::Phase) => {
-                let message = format!("{} has no meaning with over = \"phase\"", parameter.name());
+            (Some((key, place)), Over::Phase) => {
+                let message = format!("{key} has no meaning with over = \"phase\"");
                 Err(SpecError::at(place.clone(), message).help(
                     "there the block is in uncontrolled stick-slip, whose phases are all taken; \
                      over = \"state\" is about velocities and elongations",
@@ -237,6 +215,20 @@ impl BasinKeys {
             _ => Ok(self.basin),
         }
     }
+}
+
+fn read_starts(entry: &Entry) -> Result<u32, SpecError> {
+    Basin::check_starts(entry.whole()?).map_err(|why| entry.error(why))
+}
+
+fn read_box(of: &Entry, parameter: Parameter) -> Result<[f64; 2], SpecError> {
+    let mut table = of.document(ENDS)?;
+    let [from, to] = ENDS.map(|end| table.take(end, Entry::number));
+    table.finish()?;
+    let missing = |name| of.error(format!("{name} is missing"));
+    let from = from.ok_or_else(|| missing("from"))?;
+    let to = to.ok_or_else(|| missing("to"))?;
+    Basin::check_range(parameter, [from, to]).map_err(|why| SpecError::at(of.span.clone(), why))
 }
 
 fn read_over(entry: &Entry) -> Result<Over, SpecError> {

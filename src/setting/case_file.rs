@@ -31,8 +31,6 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 
-use std::ops::Range;
-
 use super::given::{GivenParameters, read_units};
 use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
@@ -40,6 +38,7 @@ use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::units::Units;
 use super::values::Setting;
 use crate::slip::case::{Case, CaseError};
+use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// Samples per step if the file gives no number.
@@ -133,14 +132,12 @@ impl CaseSpec {
     #[must_use]
     pub fn too_long(&self, message: String) -> SpecError {
         let place = || {
-            let document = parse(&self.text).ok()?;
-            let all = entries(document.get_ref(), "");
-            let trace = all.iter().find(|entry| entry.key == "trace")?;
-            let keys = trace.table().ok()?;
-            let key = |name: &str| keys.iter().find(|entry| entry.key == name);
-            let found = key("interval").or_else(|| key("samples"));
-            let found = found.or_else(|| key("until"));
-            Some(found.map_or(&trace.key_span, |entry| &entry.span).clone())
+            let parsed = parse(&self.text).ok()?;
+            let mut document = Document::of(entries(parsed.get_ref(), ""), ["trace"]);
+            let keys = document.entry("trace")?.document(names(&TRACE)).ok()?;
+            let mut of = ["interval", "samples", "until"].into_iter();
+            let found = of.find_map(|key| keys.value(key));
+            found.or(document.key("trace")).cloned()
         };
         SpecError {
             span: place(),
@@ -158,29 +155,30 @@ impl std::str::FromStr for CaseSpec {
     /// # Errors
     /// Points at the first place that is not understood, out of range or contradictory.
     fn from_str(text: &str) -> Result<Self, SpecError> {
-        let document = parse(text)?;
-        let mut draft = Draft::default();
-        for entry in entries(document.get_ref(), "") {
-            match entry.key {
-                "title" => entry.line()?.clone_into(&mut draft.title),
-                "friction" => draft.given.read_friction(&entry)?,
-                "fixed" => draft.given.read_fixed(&entry, moves)?,
-                "switch_on" => {
-                    draft.switch_on = Some((read_switch_on(&entry)?, entry.key_span.clone()));
-                }
-                "start" => draft.given.read_start(&entry)?,
-                "trace" => draft.read_trace(&entry)?,
-                "units" => draft.units = read_units(&entry)?,
-                _ if draft.simulation.read(&entry)? => {}
-                key if OF_SWEEPS.contains(&key) => {
-                    return Err(entry.elsewhere(
-                        "it is a key of a sweep file, of a map: `slipmap run` takes it",
-                    ));
-                }
-                _ => return Err(entry.unknown(&names(&CASE))),
-            }
-        }
-        draft.finish(text)
+        let parsed = parse(text)?;
+        let mut document = Document::of(entries(parsed.get_ref(), ""), names(&CASE));
+        document.refuse(
+            &OF_SWEEPS,
+            "it is a key of a sweep file, of a map: `slipmap run` takes it",
+        );
+        let title = document.take("title", Entry::line).unwrap_or_default();
+        let given = GivenParameters::of(&mut document, moves);
+        let switch_on = document.take("switch_on", read_switch_on);
+        let trace = document.take("trace", read_trace).unwrap_or_default();
+        let units = document.take("units", read_units).unwrap_or_default();
+        let simulation = Simulation::of(&mut document);
+        document.finish()?;
+        let setting = setting(&given)?;
+        Ok(Self {
+            title: title.to_owned(),
+            case: case(&document, &given, &simulation, switch_on, &setting)?,
+            setting,
+            start_assumed: !given.has_start(),
+            until: trace.until,
+            sampling: trace.sampling.unwrap_or(Sampling::PerStep(SAMPLES)),
+            units,
+            text: text.to_owned(),
+        })
     }
 }
 
@@ -200,107 +198,95 @@ fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
     }
 }
 
+/// The table `[trace]`.
 #[derive(Default)]
-struct Draft {
-    title: String,
-    given: GivenParameters,
-    switch_on: Option<(f64, Range<usize>)>,
-    simulation: Simulation,
+struct TraceKeys {
     until: Option<f64>,
     sampling: Option<Sampling>,
-    units: Units,
 }
 
-impl Draft {
-    fn read_trace(&mut self, trace: &Entry) -> Result<(), SpecError> {
-        for entry in trace.table()? {
-            let sampling = match entry.key {
-                "until" => {
-                    self.until = Some(entry.number_within(POSITIVE)?);
-                    continue;
-                }
-                "samples" => Sampling::PerStep(read_samples(&entry)?),
-                "interval" => Sampling::Interval(entry.number_within(POSITIVE)?),
-                _ => return Err(entry.unknown(&names(&TRACE))),
-            };
-            if self.sampling.replace(sampling).is_some() {
-                return Err(SpecError::at(
-                    entry.key_span.clone(),
-                    "trace: either samples in each step or an interval, not both",
-                ));
-            }
+fn read_trace(trace: &Entry) -> Result<TraceKeys, SpecError> {
+    let mut table = trace.document(names(&TRACE))?;
+    let mut trace = TraceKeys {
+        until: table.take("until", |entry| entry.number_within(POSITIVE)),
+        sampling: None,
+    };
+    table.each(&["samples", "interval"], |entry| {
+        let sampling = match entry.key {
+            "samples" => Sampling::PerStep(read_samples(entry)?),
+            _ => Sampling::Interval(entry.number_within(POSITIVE)?),
+        };
+        match trace.sampling.replace(sampling) {
+            Some(_) => Err(SpecError::at(
+                entry.key_span.clone(),
+                "trace: either samples in each step or an interval, not both",
+            )),
+            None => Ok(()),
         }
-        Ok(())
-    }
+    });
+    table.finish()?;
+    Ok(trace)
+}
 
-    fn finish(mut self, text: &str) -> Result<CaseSpec, SpecError> {
-        let Some(law_place) = self.given.law_place().cloned() else {
-            return Err(SpecError::whole("a case needs a friction law")
-                .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
-        };
-        self.given.check_motions()?;
-        let mut setting = self.given.setting();
-        let optional = (!setting.control().act()).then_some(Parameter::Tau);
-        self.given.check(optional.as_slice(), Some(&law_place))?;
-        if setting.get(Parameter::Tau).is_nan() {
-            setting.set(Parameter::Tau, 0.0);
-        }
-        let start_assumed = !self.given.has_start();
-        if start_assumed {
-            let v0 = setting.get(Parameter::V0);
-            setting.set(Parameter::XDot0, (1.0 + DISTURBED) * v0);
-        }
-        let case = self.case(&setting)?;
-        case.motion().map_err(|error| self.refused(&error))?;
-        Ok(CaseSpec {
-            title: std::mem::take(&mut self.title),
-            setting,
-            case,
-            start_assumed,
-            until: self.until,
-            sampling: self.sampling.unwrap_or(Sampling::PerStep(SAMPLES)),
-            units: self.units,
-            text: text.to_owned(),
-        })
+/// The setting of a case, with the defaults of its delay and its start.
+fn setting(given: &GivenParameters) -> Result<Setting, SpecError> {
+    let Some(law_place) = given.law_place() else {
+        return Err(SpecError::whole("a case needs a friction law")
+            .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
+    };
+    given.check_motions()?;
+    let mut setting = given.setting();
+    let optional = (!setting.control().act()).then_some(Parameter::Tau);
+    given.check(optional.as_slice(), Some(law_place))?;
+    if setting.get(Parameter::Tau).is_nan() {
+        setting.set(Parameter::Tau, 0.0);
     }
-
-    /// The motion, with the defaults that depend on parameters.
-    fn case(&self, setting: &Setting) -> Result<Case, SpecError> {
-        self.given.check_start()?;
-        let phase = self.given.place(Parameter::SwitchOnPhase);
-        let switch_on = match (&self.switch_on, phase) {
-            (Some((_, place)), Some(_)) => {
-                let message = "switch_on: switch_on_phase says when control begins to act";
-                return Err(SpecError::at(place.clone(), message).help("leave one of them out"));
-            }
-            (given, _) => given.as_ref().map_or(0.0, |(time, _)| *time),
-        };
-        let case = self
-            .simulation
-            .case(setting, switch_on)
-            .map_err(|error| self.given.refused(&error))?
-            .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
-        let name = match phase {
-            Some(_) => Parameter::SwitchOnPhase.name(),
-            None => "switch_on",
-        };
-        if case.switch_on.is_finite() {
-            self.simulation.check_horizon(name, case.switch_on)?;
-        }
-        Ok(case)
+    if !given.has_start() {
+        let v0 = setting.get(Parameter::V0);
+        setting.set(Parameter::XDot0, (1.0 + DISTURBED) * v0);
     }
+    Ok(setting)
+}
 
-    /// An error of the model, at the place of the parameter if the file gives it.
-    fn refused(&self, error: &CaseError) -> SpecError {
-        let parameter = match error {
-            CaseError::Model(error) => Parameter::from_name(error.parameter),
-            CaseError::NoCycle(_) => Some(Parameter::SwitchOnPhase),
-        };
-        SpecError {
-            message: error.to_string(),
-            span: parameter.and_then(|p| self.given.place(p)).cloned(),
-            help: None,
-        }
+/// The motion of a case, with the defaults that depend on parameters.
+fn case(
+    document: &Document,
+    given: &GivenParameters,
+    simulation: &Simulation,
+    switch_on: Option<f64>,
+    setting: &Setting,
+) -> Result<Case, SpecError> {
+    given.check_start()?;
+    let phase = given.place(Parameter::SwitchOnPhase);
+    if let (Some(place), Some(_)) = (document.key("switch_on"), phase) {
+        let message = "switch_on: switch_on_phase says when control begins to act";
+        return Err(SpecError::at(place.clone(), message).help("leave one of them out"));
+    }
+    let case = simulation
+        .case(setting, switch_on.unwrap_or(0.0))
+        .map_err(|error| given.refused(&error))?
+        .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
+    let name = match phase {
+        Some(_) => Parameter::SwitchOnPhase.name(),
+        None => "switch_on",
+    };
+    if case.switch_on.is_finite() {
+        simulation.check_horizon(document.value("horizon"), name, case.switch_on)?;
+    }
+    case.motion().map_err(|error| refused(given, &error))?;
+    Ok(case)
+}
+
+/// An error of the model, at the place of the parameter if the file gives it.
+fn refused(given: &GivenParameters, error: &CaseError) -> SpecError {
+    let parameter = match error {
+        CaseError::Model(error) => Parameter::from_name(error.parameter),
+        CaseError::NoCycle(_) => Some(Parameter::SwitchOnPhase),
+    };
+    SpecError {
+        message: error.to_string(),
+        span: parameter.and_then(|p| given.place(p)).cloned(),
+        help: None,
     }
 }
 

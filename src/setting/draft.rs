@@ -10,21 +10,18 @@ use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
-use super::keys::{SWEEP, names};
-use super::limit_spec;
+use super::keys::{SIMULATION, SWEEP, names};
 use super::map_names::MOST_AXES;
-use super::parameter::Parameter;
 use super::quantity::Quantity;
-use super::search::LIMIT;
+use super::search::{LIMIT, Protocol};
 use super::simulation::{DISTURBED, Simulation};
-use super::spec::{SweepSpec, most};
+use super::spec::SweepSpec;
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
 use super::system_draft::SystemDraft;
-use super::units::Units;
 use super::vc_keys::VcKeys;
-use crate::linear::MarginalTolerance;
+use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// The most points on all axes but the last together: more would give too many cells.
@@ -48,212 +45,189 @@ impl SweepSpec {
     /// # Errors
     /// Points at the first place that is not understood, out of range or contradictory.
     pub fn read(text: &str, most_points: u64) -> Result<Self, SpecError> {
-        let document = parse(text)?;
-        let mut draft = Draft::default();
-        let all = entries(document.get_ref(), "");
-        // The meaning of other names depends on the system, so it is read first.
-        if let Some(system) = all.iter().find(|entry| entry.key == "system") {
-            draft.system = Some(SystemDraft::read(system, text)?);
-        }
-        for entry in all {
-            if draft.foreign.is_none() && !limit_spec::KEYS.contains(&entry.key) {
-                draft.foreign = Some((entry.key.to_owned(), entry.key_span.clone()));
-            }
-            if draft.system.is_some() {
-                SystemDraft::check_key(&entry)?;
-            }
-            match entry.key {
-                "system" => {}
-                "title" => entry.line()?.clone_into(&mut draft.title),
-                "protocol" if entry.string()? == LIMIT => {
-                    draft.is_limit = true;
-                }
-                "picture" => draft.picture = Some((read_field(&entry)?, entry.span.clone())),
-                "fields" => draft.read_fields(&entry)?,
-                "boundaries" => {
-                    draft.boundaries = Some(entry.boolean()?);
-                }
-                "degree_of_stability" => draft.read_degrees(&entry)?,
-                "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
-                "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
-                "fixed" => match &mut draft.system {
-                    Some(system) => system.read_fixed(&entry)?,
-                    None => draft.given.read_fixed(&entry, |_| true)?,
-                },
-                "friction" => draft.given.read_friction(&entry)?,
-                "start" => draft.given.read_start(&entry)?,
-                "simulation" => draft.read_simulation(&entry)?,
-                "basin" => draft.basin.read(&entry)?,
-                "units" => draft.units = read_units(&entry)?,
-                "tolerance" => draft.tolerance = read_tolerance(&entry)?,
-                _ if draft.vc.read(&entry)? => {}
-                "switch_on" | "horizon" | "trace" | "steps" => {
-                    return Err(entry.elsewhere(
-                        "it is a key of a case file, of one motion: `slipmap simulate` takes it; \
-                         in a sweep, [simulation] has the horizon and the steps",
-                    ));
-                }
-                _ => return Err(entry.unknown(&names(&SWEEP))),
-            }
-        }
-        draft.finish(text)
+        let parsed = parse(text)?;
+        let mut document = Document::of(entries(parsed.get_ref(), ""), names(&SWEEP));
+        let system = SystemDraft::of(&mut document, text)?;
+        document.refuse(
+            &["switch_on", "horizon", "trace", "steps"],
+            "it is a key of a case file, of one motion: `slipmap simulate` takes it; in a sweep, \
+             [simulation] has the horizon and the steps",
+        );
+        let most = most_points.min(MOST_POINTS);
+        let (system, given, axes) = read_parameters(&mut document, system, most);
+        let asked = document.take("fields", read_fields).unwrap_or_default();
+        let simulation = document.take("simulation", read_simulation);
+        let (simulation, horizon) = simulation.unwrap_or_default();
+        let basin = document.take("basin", BasinKeys::read).unwrap_or_default();
+        let [follow, switch_on] = Protocol::NAMES;
+        let vc = VcKeys::of(&mut document, &[follow, switch_on, LIMIT]);
+        let degrees = document.take("degree_of_stability", read_degrees);
+        let spec = Self {
+            title: document
+                .take("title", Entry::line)
+                .unwrap_or_default()
+                .to_owned(),
+            picture: document.take("picture", read_field),
+            limit: vc.of_limit(),
+            axes,
+            fixed: given.setting(),
+            fields: Vec::new(),
+            boundaries: document.take("boundaries", Entry::boolean),
+            degrees_of_stability: degrees.unwrap_or_default(),
+            best: document.take("best", Entry::boolean).unwrap_or_default(),
+            tolerance: document
+                .take("tolerance", read_tolerance)
+                .unwrap_or_default(),
+            simulation,
+            basin: None,
+            critical: None,
+            units: document.take("units", read_units).unwrap_or_default(),
+            text: text.to_owned(),
+        };
+        document.finish()?;
+        let (asked, places) = asked.into_iter().unzip();
+        let read = SweepFile {
+            document,
+            spec,
+            system,
+            given,
+            asked,
+            places,
+            basin,
+            vc,
+            horizon,
+        };
+        read.finish()
     }
 }
 
-/// The parts of a sweep file read so far, with their places, before they are known to be
-/// consistent.
-#[derive(Default)]
-struct Draft {
-    title: String,
-    /// The field that pictures show, and its place.
-    picture: Option<(Field, Range<usize>)>,
-    is_limit: bool,
-    /// The first key that is not allowed in the limit of a short delay.
-    foreign: Option<(String, Range<usize>)>,
+/// A sweep file with the places of its keys, before it is known to be consistent.
+struct SweepFile<'t> {
+    document: Document<'t>,
+    /// The sweep, without what follows from several keys.
+    spec: SweepSpec,
+    /// The system, where it is not the letter's.
+    system: Option<SystemDraft>,
+    given: GivenParameters,
     /// The fields in the order of the file, and their places.
     asked: Vec<Field>,
     places: Vec<Range<usize>>,
-    fields: Option<Vec<Field>>,
     basin: BasinKeys,
     vc: VcKeys,
-    simulation: Simulation,
-    simulation_place: Option<Range<usize>>,
-    boundaries: Option<bool>,
-    degrees: Vec<f64>,
-    degrees_place: Option<Range<usize>>,
-    /// The place of the request for best settings, if there is one.
-    best: Option<Range<usize>>,
-    /// The system, where it is not the letter's.
-    system: Option<SystemDraft>,
-    axes: Vec<Axis>,
-    axes_place: Option<Range<usize>>,
-    given: GivenParameters,
-    units: Units,
-    tolerance: MarginalTolerance,
+    /// The place of the horizon, if it is given.
+    horizon: Option<Range<usize>>,
 }
 
-impl Draft {
-    fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
-        self.fields = Some(read_fields(fields)?);
-        for element in fields.array()? {
-            self.asked.push(read_field(&element)?);
-            self.places.push(element.span);
+/// Reads the table `[simulation]`, with the place of the horizon.
+fn read_simulation(table: &Entry) -> Result<(Simulation, Option<Range<usize>>), SpecError> {
+    let mut table = table.document(names(&SIMULATION))?;
+    let simulation = Simulation::of(&mut table);
+    table.finish()?;
+    Ok((simulation, table.value("horizon").cloned()))
+}
+
+/// Reads the tables of parameters: of the system, or of the block.
+fn read_parameters(
+    document: &mut Document,
+    mut system: Option<SystemDraft>,
+    most_points: u64,
+) -> (Option<SystemDraft>, GivenParameters, Vec<Axis>) {
+    let (mut given, mut axes) = (GivenParameters::default(), Vec::new());
+    let tables = ["axes", "fixed", "friction", "start"];
+    document.each(&tables, |table| match (table.key, &mut system) {
+        ("axes", system) => read_axes(table, most_points, &mut axes, |entry| match system {
+            Some(system) => system.give(entry),
+            None => given.give_axis(entry),
+        }),
+        ("fixed", Some(system)) => system.read_fixed(table),
+        _ => given.read(table, |_| true),
+    });
+    (system, given, axes)
+}
+
+/// Reads the table `[axes]`; `give` records the parameter of an axis.
+fn read_axes(
+    table: &Entry,
+    most_points: u64,
+    axes: &mut Vec<Axis>,
+    mut give: impl FnMut(&Entry) -> Result<Quantity, SpecError>,
+) -> Result<(), SpecError> {
+    for entry in table.table()? {
+        if axes.len() == MOST_AXES {
+            let message = format!(
+                "{} is one axis too many: a map has {MOST_AXES} at most",
+                entry.path
+            );
+            return Err(SpecError::at(entry.key_span.clone(), message)
+                .help("give it one value in [fixed], and make a sweep for each other value"));
         }
-        Ok(())
-    }
-
-    fn read_simulation(&mut self, simulation: &Entry) -> Result<(), SpecError> {
-        self.simulation_place = Some(simulation.key_span.clone());
-        self.simulation.read_table(simulation)
-    }
-
-    fn read_degrees(&mut self, degrees: &Entry) -> Result<(), SpecError> {
-        self.degrees = read_degrees(degrees)?;
-        self.degrees_place = Some(degrees.key_span.clone());
-        Ok(())
-    }
-
-    fn read_axes(&mut self, axes: &Entry, most_points: u64) -> Result<(), SpecError> {
-        self.axes_place = Some(axes.key_span.clone());
-        for entry in axes.table()? {
-            if self.axes.len() == MOST_AXES {
-                let message = format!(
-                    "{} is one axis too many: a map has {MOST_AXES} at most",
-                    entry.path
-                );
-                return Err(SpecError::at(entry.key_span.clone(), message)
-                    .help("give it one value in [fixed], and make a sweep for each other value"));
-            }
-            let parameter = self.give_axis(&entry)?;
-            let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
-            if points > MOST_POINTS_TOGETHER {
-                let message = format!(
-                    "the axes before it have {points} points together; at most \
-                    {MOST_POINTS_TOGETHER} are allowed"
-                );
-                return Err(entry.error(message));
-            }
-            let values = if entry.is_table() {
-                read_range(&entry, most_points)?
-            } else {
-                read_list(&entry, &parameter)?
-            };
-            let axis = Axis::new(parameter, values).map_err(|e| entry.error(e.0))?;
-            self.axes.push(axis);
+        let parameter = give(&entry)?;
+        let points: u64 = axes.iter().map(|axis| axis.len() as u64).sum();
+        if points > MOST_POINTS_TOGETHER {
+            let message = format!(
+                "the axes before it have {points} points together; at most \
+                 {MOST_POINTS_TOGETHER} are allowed"
+            );
+            return Err(entry.error(message));
         }
-        Ok(())
+        let values = if entry.is_table() {
+            read_range(&entry, most_points)?
+        } else {
+            read_list(&entry, &parameter)?
+        };
+        axes.push(Axis::new(parameter, values).map_err(|e| entry.error(e.0))?);
     }
+    Ok(())
+}
 
-    /// Reads the parameter of an axis.
-    fn give_axis(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
-        if let Some(system) = &mut self.system {
-            return system.give(entry);
-        }
-        let parameter = Parameter::from_name(entry.key)
-            .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
-        self.given.give(parameter, &entry.key_span)?;
-        Ok(parameter.into())
-    }
-
-    fn finish(self, text: &str) -> Result<SweepSpec, SpecError> {
-        if self.axes.is_empty() {
+impl SweepFile<'_> {
+    fn finish(mut self) -> Result<SweepSpec, SpecError> {
+        if self.spec.axes.is_empty() {
             let message = "a sweep needs at least one axis";
             return Err(SpecError {
-                span: self.axes_place,
+                span: self.document.key("axes").cloned(),
                 ..SpecError::whole(message)
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        let (fixed, critical, default_fields) = if let Some(system) = &self.system {
-            (self.check_system(system)?, None, vec![Field::NUnstable])
-        } else if self.is_limit {
-            (self.check_limit()?, None, Field::all_of_limit().collect())
+        if let Some(system) = &self.system {
+            self.spec.fixed = self.check_system(system)?;
+        } else if self.spec.limit {
+            self.spec.fixed = self.check_limit()?;
         } else {
-            let (fixed, critical) = self.check()?;
-            (fixed, critical, vec![Field::NUnstable])
-        };
-        let basin = self.asks(Field::of_basin).then(|| self.basin.basin());
-        let mut simulation = self.simulation.clone();
-        if critical.is_none() && self.asks(Field::of_motion) && !self.given.has_start() {
-            simulation.disturbance = DISTURBED;
+            self.spec.critical = self.check()?;
         }
-        let mut fields = self.fields.unwrap_or(default_fields);
-        let beyond = !most(&fixed, &self.axes).is_of_letter();
+        let critical = self.spec.critical.is_some();
+        if !critical && self.asks(Field::of_motion) && !self.given.has_start() {
+            self.spec.simulation.disturbance = DISTURBED;
+        }
+        if self.asks(Field::of_basin) {
+            self.spec.basin = Some(self.basin.basin()?);
+        }
+        let mut fields = match (self.asked.is_empty(), self.spec.limit) {
+            (false, _) => Field::with_bounds(self.asked),
+            (true, true) => Field::all_of_limit().collect(),
+            (true, false) => vec![Field::NUnstable],
+        };
+        let beyond = !self.spec.is_of_letter();
         if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
             fields.push(Field::Reason);
             fields.sort_unstable();
         }
-        Ok(SweepSpec {
-            title: self.title,
-            picture: picture(self.picture, &fields)?,
-            limit: self.is_limit,
-            axes: self.axes,
-            fixed,
-            fields,
-            boundaries: self.boundaries,
-            degrees_of_stability: self.degrees,
-            best: self.best.is_some(),
-            tolerance: self.tolerance,
-            simulation,
-            basin: basin.transpose()?,
-            critical,
-            units: self.units,
-            text: text.to_owned(),
-        })
+        self.spec.fields = fields;
+        check_picture(&self.spec, self.document.value("picture"))?;
+        Ok(self.spec)
     }
 }
 
 /// Checks that the field for pictures is a field of the sweep.
-fn picture(
-    asked: Option<(Field, Range<usize>)>,
-    fields: &[Field],
-) -> Result<Option<Field>, SpecError> {
-    match asked {
-        Some((field, place)) if !fields.contains(&field) => {
-            let held: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+fn check_picture(spec: &SweepSpec, place: Option<&Range<usize>>) -> Result<(), SpecError> {
+    match (spec.picture, place) {
+        (Some(field), Some(place)) if !spec.fields.contains(&field) => {
+            let held: Vec<&str> = spec.fields.iter().map(|field| field.name()).collect();
             let message = format!("picture: {} is not among the fields", field.name());
-            Err(SpecError::at(place, message).help(format!("fields: {}", held.join(", "))))
+            Err(SpecError::at(place.clone(), message).help(format!("fields: {}", held.join(", "))))
         }
-        asked => Ok(asked.map(|(field, _)| field)),
+        _ => Ok(()),
     }
 }

@@ -6,12 +6,14 @@ use std::ops::Range;
 use super::friction_table::GivenTable;
 use super::keys::{FRICTION_TABLE, UNITS, names};
 use super::law_kind::{Formula, LawKind};
-use super::needs::{At, Unmet, no_motions, two_starts};
+use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
+use super::quantity::Quantity;
 use super::units::Units;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
+use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 
@@ -40,9 +42,40 @@ impl GivenParameters {
         Ok(())
     }
 
+    /// The tables of a document, in its order. For an unknown name, one of the parameters that the
+    /// document `takes` is suggested.
+    pub(super) fn of(document: &mut Document, takes: impl Fn(Parameter) -> bool) -> Self {
+        let mut given = Self::default();
+        let tables = ["fixed", "friction", "start"];
+        document.each(&tables, |table| given.read(table, &takes));
+        given
+    }
+
+    /// Records the parameter of an axis.
+    pub(super) fn give_axis(&mut self, axis: &Entry) -> Result<Quantity, SpecError> {
+        let parameter = Parameter::from_name(axis.key)
+            .ok_or_else(|| axis.unknown(&Parameter::ALL.map(Parameter::name)))?;
+        self.give(parameter, &axis.key_span)?;
+        Ok(parameter.into())
+    }
+
+    /// Reads one of the tables of parameters. For an unknown name, one of the parameters that the
+    /// file `takes` is suggested.
+    pub(super) fn read(
+        &mut self,
+        table: &Entry,
+        takes: impl Fn(Parameter) -> bool,
+    ) -> Result<(), SpecError> {
+        match table.key {
+            "fixed" => self.read_fixed(table, takes),
+            "friction" => self.read_friction(table),
+            _ => self.read_start(table),
+        }
+    }
+
     /// Reads the table `[fixed]`. For an unknown name, one of the parameters that the file `takes`
     /// is suggested.
-    pub(super) fn read_fixed(
+    fn read_fixed(
         &mut self,
         fixed: &Entry,
         takes: impl Fn(Parameter) -> bool,
@@ -68,7 +101,7 @@ impl GivenParameters {
 
     /// Reads the table `[start]`: the start of a motion. The same parameters may stand in
     /// `[fixed]`.
-    pub(super) fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
+    fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
         for entry in start.table()? {
             let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
             let parameter = known.ok_or_else(|| {
@@ -111,7 +144,7 @@ impl GivenParameters {
     }
 
     /// Reads the table `[friction]`.
-    pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
+    fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
         let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
         let [law, table @ ..] = FRICTION_TABLE.map(|key| key.name);
         let known: Vec<_> = [law]
@@ -167,9 +200,9 @@ impl GivenParameters {
     /// The error of a need that is not met, at its place. `field` is the place of the field.
     pub(super) fn unmet(&self, unmet: Unmet, field: Option<&Range<usize>>) -> SpecError {
         let place = match unmet.at {
-            At::Field => field,
-            At::Law => self.law_place(),
-            At::Parameter(parameter) => self.place(parameter).or(field),
+            ReportedAt::Field => field,
+            ReportedAt::Law => self.law_place(),
+            ReportedAt::Parameter(parameter) => self.place(parameter).or(field),
         };
         SpecError {
             span: place.cloned(),
@@ -324,6 +357,12 @@ impl Setting {
     }
 }
 
+fn read_unit(entry: &Entry) -> Result<String, SpecError> {
+    let name = entry.string()?;
+    Units::check_name(name).map_err(|why| entry.error(why))?;
+    Ok(name.to_owned())
+}
+
 /// Reads the table `[units]`.
 pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
     if !units.is_table() {
@@ -338,18 +377,9 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
                 ))
         });
     }
-    let [mut force, mut length, mut time] = [None, None, None];
-    for entry in units.table()? {
-        let slot = match entry.key {
-            "force" => &mut force,
-            "length" => &mut length,
-            "time" => &mut time,
-            _ => return Err(entry.unknown(&names(&UNITS))),
-        };
-        let name = entry.string()?;
-        Units::check_name(name).map_err(|why| entry.error(why))?;
-        *slot = Some(name.to_owned());
-    }
+    let mut table = units.document(names(&UNITS))?;
+    let [force, length, time] = ["force", "length", "time"].map(|key| table.take(key, read_unit));
+    table.finish()?;
     match (force, length, time) {
         (Some(force), Some(length), Some(time)) => Ok(Units {
             force_length_time: Some([force, length, time]),

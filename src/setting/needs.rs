@@ -29,7 +29,7 @@ pub(super) enum Stage {
 
 /// Fields, and where they are to be computed.
 #[derive(Clone, Copy)]
-pub(super) struct Asked<'a> {
+pub(super) struct FieldsAsked<'a> {
     /// The fields, in the order of the file.
     pub fields: &'a [Field],
     /// The parameters that are no axes.
@@ -43,14 +43,14 @@ pub(super) struct Asked<'a> {
 
 /// A need that is not met.
 pub(super) struct Unmet {
-    pub at: At,
+    pub at: ReportedAt,
     /// The error, without a place.
     pub error: SpecError,
 }
 
 /// What an unmet need is reported at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum At {
+pub(super) enum ReportedAt {
     /// The field.
     Field,
     /// The name of the friction law.
@@ -59,7 +59,7 @@ pub(super) enum At {
     Parameter(Parameter),
 }
 
-impl At {
+impl ReportedAt {
     fn refuse(self, message: impl Into<String>, help: impl Into<String>) -> Unmet {
         Unmet {
             at: self,
@@ -73,158 +73,140 @@ struct Need {
     stage: Stage,
     of: fn(Field) -> bool,
     /// The error where it is not met.
-    unmet: fn(&Asked, Field) -> Option<Unmet>,
+    unmet: fn(&FieldsAsked, Field) -> Option<Unmet>,
+}
+
+const fn need(
+    stage: Stage,
+    of: fn(Field) -> bool,
+    unmet: fn(&FieldsAsked, Field) -> Option<Unmet>,
+) -> Need {
+    Need { stage, of, unmet }
 }
 
 /// The needs. Of several unmet ones the first is reported, at the first field that has it.
 const NEEDS: [Need; 16] = [
-    Need {
-        stage: Stage::Protocol,
-        of: Field::of_limit,
-        unmet: |asked, field| (!asked.limit).then(|| of_limit(field)),
-    },
-    Need {
-        stage: Stage::Protocol,
-        of: |field| !field.of_limit(),
-        unmet: |asked, field| asked.limit.then(|| no_meaning(field.name())),
-    },
-    Need {
-        stage: Stage::Model,
-        of: |_| true,
-        unmet: |asked, field| not_of_system(field, asked.fixed.system()?),
-    },
-    Need {
-        stage: Stage::Model,
-        of: of_motions,
-        unmet: |asked, _| no_motions(asked.fixed.law()?),
-    },
-    Need {
-        stage: Stage::Model,
-        of: of_motions,
-        unmet: |asked, _| {
-            let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_MOTIONS)?;
-            let message = format!("{} is not known to motions", parameter.name());
-            Some(At::Parameter(parameter).refuse(message, LINEAR))
-        },
-    },
-    Need {
-        stage: Stage::Model,
-        of: |field| field.of_margins() && field != Field::LatencyMargin,
-        unmet: not_by_slope,
-    },
-    Need {
-        stage: Stage::Model,
-        of: |field| field == Field::DAbscissaDMuPrime,
-        unmet: not_by_slope,
-    },
-    Need {
-        stage: Stage::Model,
-        of: |field| field == Field::StiffnessRatio,
-        unmet: |asked, field| {
+    need(Stage::Protocol, Field::of_limit, |asked, field| {
+        (!asked.limit).then(|| of_limit(field))
+    }),
+    need(
+        Stage::Protocol,
+        |field| !field.of_limit(),
+        |asked, field| asked.limit.then(|| no_meaning(field.name())),
+    ),
+    need(
+        Stage::Model,
+        |_| true,
+        |asked, field| not_of_system(field, asked.fixed.system()?),
+    ),
+    need(Stage::Model, of_motions, |asked, _| {
+        no_motions(asked.fixed.law()?)
+    }),
+    need(Stage::Model, of_motions, |asked, _| {
+        let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_MOTIONS)?;
+        let message = format!("{} is not known to motions", parameter.name());
+        Some(ReportedAt::Parameter(parameter).refuse(message, LINEAR))
+    }),
+    need(
+        Stage::Model,
+        |field| field.of_margins() && field != Field::LatencyMargin,
+        not_by_slope,
+    ),
+    need(
+        Stage::Model,
+        |field| field == Field::DAbscissaDMuPrime,
+        not_by_slope,
+    ),
+    need(
+        Stage::Model,
+        |field| field == Field::StiffnessRatio,
+        |asked, field| {
             let law = Formula::RateAndState.name();
             let message = format!("{} is of the {law} law", field.name());
             let help = format!("give [friction] law = \"{law}\", and v0");
             let without = asked.fixed.rate_and_state().is_none();
-            without.then(|| At::Field.refuse(message, help))
+            without.then(|| ReportedAt::Field.refuse(message, help))
         },
-    },
-    Need {
-        stage: Stage::Company,
-        of: Field::of_basin,
-        unmet: |asked, field| {
-            let others = match (asked.any(Field::of_vc), asked.any(Field::of_motion)) {
-                (true, _) => "fields of the critical velocity",
-                (false, true) => "fields of one motion",
-                (false, false) => return None,
-            };
-            Some(At::Field.refuse(
-                format!("{} cannot stand beside {others}", field.name()),
-                "it is about motions from many starts: make a sweep of its own for it; fields of \
+    ),
+    need(Stage::Company, Field::of_basin, |asked, field| {
+        let others = match (asked.any(Field::of_vc), asked.any(Field::of_motion)) {
+            (true, _) => "fields of the critical velocity",
+            (false, true) => "fields of one motion",
+            (false, false) => return None,
+        };
+        Some(ReportedAt::Field.refuse(
+            format!("{} cannot stand beside {others}", field.name()),
+            "it is about motions from many starts: make a sweep of its own for it; fields of \
                  linear stability can stand beside it",
-            ))
-        },
-    },
-    Need {
-        stage: Stage::Company,
-        of: Field::of_vc,
-        unmet: |asked, _| asked.without_law("the critical velocity depends on the whole of it"),
-    },
-    Need {
-        stage: Stage::Company,
-        of: of_motions,
-        unmet: |asked, _| asked.without_law("motions stick and slip by it"),
-    },
-    Need {
-        stage: Stage::Company,
-        of: |field| field.of_motion() && field != Field::Outcome,
-        unmet: |asked, field| {
+        ))
+    }),
+    need(Stage::Company, Field::of_vc, |asked, _| {
+        asked.without_law("the critical velocity depends on the whole of it")
+    }),
+    need(Stage::Company, of_motions, |asked, _| {
+        asked.without_law("motions stick and slip by it")
+    }),
+    need(
+        Stage::Company,
+        |field| field.of_motion() && field != Field::Outcome,
+        |asked, field| {
             let beside = format!("{} cannot stand beside", field.name());
             asked.any(Field::of_vc).then(|| {
-                At::Field.refuse(
+                ReportedAt::Field.refuse(
                     format!("{beside} fields of the critical velocity"),
                     "it is about a motion from one start: make a sweep of its own for it; outcome \
                      can stand in both",
                 )
             })
         },
-    },
-    Need {
-        stage: Stage::Values,
-        of: |_| true,
-        unmet: |asked, _| {
+    ),
+    need(
+        Stage::Values,
+        |_| true,
+        |asked, _| {
             let (error, law) = (GivenError::Missing(Parameter::V0), asked.fixed.law()?);
             let [message, help] = [
                 error.message(Some(law), Parameter::key),
                 error.help(Parameter::key),
             ];
             let missing = asked.needs_v0() && !asked.has(Parameter::V0);
-            missing.then(|| At::Law.refuse(message, help))
+            missing.then(|| ReportedAt::Law.refuse(message, help))
         },
-    },
-    Need {
-        stage: Stage::Values,
-        of: Field::of_motion,
-        unmet: |asked, _| two_starts(|parameter| asked.has(parameter)),
-    },
-    Need {
-        stage: Stage::Values,
-        of: of_motions,
-        unmet: |asked, _| {
-            let gains = [Parameter::AlphaV, Parameter::AlphaN];
-            let acts = gains
-                .iter()
-                .any(|&p| asked.values(p).any(|gain| gain != 0.0));
-            let at_once = || asked.values(Parameter::Tau).any(|tau| tau == 0.0);
-            (acts && at_once()).then(|| Unmet {
-                at: At::Parameter(Parameter::Tau),
-                error: SpecError::whole(
-                    "tau = 0 is outside its range: greater than 0 where gains act and motions are \
+    ),
+    need(Stage::Values, Field::of_motion, |asked, _| {
+        two_starts(|parameter| asked.has(parameter))
+    }),
+    need(Stage::Values, of_motions, |asked, _| {
+        let gains = [Parameter::AlphaV, Parameter::AlphaN];
+        let acts = gains
+            .iter()
+            .any(|&p| asked.values(p).any(|gain| gain != 0.0));
+        let at_once = || asked.values(Parameter::Tau).any(|tau| tau == 0.0);
+        (acts && at_once()).then(|| Unmet {
+            at: ReportedAt::Parameter(Parameter::Tau),
+            error: SpecError::whole(
+                "tau = 0 is outside its range: greater than 0 where gains act and motions are \
                      followed",
-                ),
-            })
-        },
-    },
-    Need {
-        stage: Stage::Values,
-        of: Field::of_basin,
-        unmet: |asked, field| {
-            let mut start = Parameter::ALL.into_iter().filter(|p| p.of_start());
-            let parameter = start.find(|&p| asked.has(p))?;
-            Some(At::Parameter(parameter).refuse(
-                format!("{} says one start", parameter.name()),
-                format!(
-                    "{} is of many: [basin] says their ranges, or over = \"phase\"",
-                    field.name()
-                ),
-            ))
-        },
-    },
+            ),
+        })
+    }),
+    need(Stage::Values, Field::of_basin, |asked, field| {
+        let mut start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+        let parameter = start.find(|&p| asked.has(p))?;
+        Some(ReportedAt::Parameter(parameter).refuse(
+            format!("{} says one start", parameter.name()),
+            format!(
+                "{} is of many: [basin] says their ranges, or over = \"phase\"",
+                field.name()
+            ),
+        ))
+    }),
 ];
 
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 /// The first need of a stage that is not met, with the field.
-pub(super) fn unmet(asked: &Asked, stage: Stage) -> Option<(Field, Unmet)> {
+pub(super) fn unmet(asked: &FieldsAsked, stage: Stage) -> Option<(Field, Unmet)> {
     let needs = NEEDS.iter().filter(|need| need.stage == stage);
     needs.into_iter().find_map(|need| {
         let mut fields = asked.fields.iter().filter(|field| (need.of)(**field));
@@ -249,15 +231,7 @@ impl SweepSpec {
     /// # Errors
     /// In the words of sweep files, without a place.
     pub fn check_needs(&self) -> Result<(), SpecError> {
-        let asked = Asked {
-            fields: &self.fields,
-            fixed: &self.fixed,
-            axes: &self.axes,
-            limit: self.limit,
-            planes: self.best
-                || self.boundaries == Some(true)
-                || !self.degrees_of_stability.is_empty(),
-        };
+        let asked = FieldsAsked::of(self);
         let stages = [Stage::Protocol, Stage::Model, Stage::Company, Stage::Values];
         match stages.into_iter().find_map(|stage| unmet(&asked, stage)) {
             Some((_, unmet)) => Err(unmet.error),
@@ -266,7 +240,19 @@ impl SweepSpec {
     }
 }
 
-impl Asked<'_> {
+impl<'a> FieldsAsked<'a> {
+    /// The fields of a sweep.
+    pub(super) fn of(spec: &'a SweepSpec) -> Self {
+        let curves = spec.boundaries == Some(true) || !spec.degrees_of_stability.is_empty();
+        Self {
+            fields: &spec.fields,
+            fixed: &spec.fixed,
+            axes: &spec.axes,
+            limit: spec.limit,
+            planes: curves || spec.best,
+        }
+    }
+
     fn any(&self, of: fn(Field) -> bool) -> bool {
         self.fields.iter().any(|&field| of(field))
     }
@@ -300,7 +286,7 @@ impl Asked<'_> {
         };
         let message = format!("this field needs a friction law: {why}");
         let without = self.fixed.law().is_none();
-        without.then(|| At::Field.refuse(message, help))
+        without.then(|| ReportedAt::Field.refuse(message, help))
     }
 }
 
@@ -312,7 +298,8 @@ fn of_motions(field: Field) -> bool {
 /// The error of a law that has no motions.
 pub(super) fn no_motions(law: &LawKind) -> Option<Unmet> {
     let message = format!("the {} law has no motions here", law.name());
-    law.has_state().then(|| At::Law.refuse(message, NO_MOTIONS))
+    law.has_state()
+        .then(|| ReportedAt::Law.refuse(message, NO_MOTIONS))
 }
 
 /// The error of a motion that starts in a state and at a phase.
@@ -322,7 +309,7 @@ pub(super) fn two_starts(has: impl Fn(Parameter) -> bool) -> Option<Unmet> {
         .into_iter()
         .find(|&p| has(p));
     let state = state.filter(|_| has(phase))?;
-    Some(At::Parameter(phase).refuse(
+    Some(ReportedAt::Parameter(phase).refuse(
         format!("{}: {} is given as well", phase.name(), state.name()),
         "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip (switch_on_phase), \
          not both",
@@ -331,17 +318,17 @@ pub(super) fn two_starts(has: impl Fn(Parameter) -> bool) -> Option<Unmet> {
 
 /// The error of a field that takes friction to be a function of the velocity, under a law with a
 /// state: there the slope does not describe friction completely.
-fn not_by_slope(asked: &Asked, field: Field) -> Option<Unmet> {
+fn not_by_slope(asked: &FieldsAsked, field: Field) -> Option<Unmet> {
     let law = asked.fixed.law().filter(|law| law.has_state())?;
     let law = format!("the {} law", law.name());
-    Some(At::Field.refuse(
+    Some(ReportedAt::Field.refuse(
         format!("{} cannot be had with {law}", field.name()),
         format!("leave it out, or {law}; {LINEAR}"),
     ))
 }
 
 fn of_limit(field: Field) -> Unmet {
-    At::Field.refuse(
+    ReportedAt::Field.refuse(
         format!("{} is a field of protocol = \"{LIMIT}\"", field.name()),
         "protocol = \"limit\" asks for v_c as the delay vanishes; its parameters are gamma and \
          mu_ratio",
@@ -352,7 +339,7 @@ fn of_limit(field: Field) -> Unmet {
 pub(super) fn no_meaning(name: &str) -> Unmet {
     let names: Vec<_> = Field::all_of_limit().map(Field::name).collect();
     let fields = names.join(", ");
-    At::Field.refuse(
+    ReportedAt::Field.refuse(
         format!("{name} has no meaning with protocol = \"{LIMIT}\""),
         format!(
             "the limit is Coulomb friction under load control as the delay vanishes; all it takes \
@@ -388,5 +375,5 @@ fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
             OTHERS,
         ),
     };
-    Some(At::Field.refuse(format!("{}: {why}", field.name()), help))
+    Some(ReportedAt::Field.refuse(format!("{}: {why}", field.name()), help))
 }

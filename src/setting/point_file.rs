@@ -23,6 +23,7 @@ use super::search::Protocol;
 use super::units::Units;
 use super::values::Setting;
 use super::vc_keys::VcKeys;
+use crate::text::document::Document;
 use crate::text::toml_reader::{SpecError, entries, parse};
 
 /// What a point is for.
@@ -67,28 +68,21 @@ impl PointSpec {
     /// # Errors
     /// Points at the first place that is not understood, out of range or contradictory.
     pub fn read(text: &str, of: PointOf) -> Result<Self, SpecError> {
-        let document = parse(text)?;
-        let mut given = GivenParameters::default();
-        let mut units = Units::default();
-        let mut search = VcKeys::default();
-        let critical = of == PointOf::CriticalVelocity;
-        for entry in entries(document.get_ref(), "") {
-            match entry.key {
-                "fixed" => given.read_fixed(&entry, |p| of.takes(p))?,
-                "friction" => given.read_friction(&entry)?,
-                "units" => units = read_units(&entry)?,
-                "start" if critical => given.read_start(&entry)?,
-                "protocol" | "phase" if critical => drop(search.read(&entry)?),
-                _ if critical => {
-                    let known = ["protocol", "phase", "fixed", "friction", "start", "units"];
-                    return Err(entry.unknown(&known));
-                }
-                _ => return Err(entry.unknown(&["fixed", "friction", "units"])),
+        let parsed = parse(text)?;
+        let keys: &[&str] = match of {
+            PointOf::CriticalVelocity => {
+                &["protocol", "phase", "fixed", "friction", "start", "units"]
             }
-        }
-        let protocol = search
-            .search(given.place(Parameter::SwitchOnPhase))?
-            .protocol;
+            _ => &["fixed", "friction", "units"],
+        };
+        let entries = entries(parsed.get_ref(), "");
+        let mut document = Document::of(entries, keys.iter().copied());
+        let given = GivenParameters::of(&mut document, |p| of.takes(p));
+        let units = document.take("units", read_units).unwrap_or_default();
+        let search = VcKeys::of(&mut document, &Protocol::NAMES);
+        document.finish()?;
+        let phase = given.place(Parameter::SwitchOnPhase);
+        let protocol = search.search(&document, phase)?.protocol;
         let mut setting = given.setting();
         match of {
             PointOf::Sliding => setting = given.sliding(&[])?,

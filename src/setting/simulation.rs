@@ -3,13 +3,13 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use super::keys::{SIMULATION, names};
 use super::parameter::{LARGEST, Parameter};
 use super::values::Setting;
 use crate::model::ModelError;
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
 use crate::text::Shown;
+use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// Default horizon, from switch-on, in units of √(M/κ).
@@ -40,7 +40,6 @@ pub struct Simulation {
     pub steps: u64,
     /// The share of v0 by which a block is faster than it is pulled at t = 0, if no start is given.
     pub disturbance: f64,
-    horizon_place: Option<Range<usize>>,
 }
 
 /// The disturbance of a motion without a given start: exactly in equilibrium a block would stay
@@ -54,7 +53,6 @@ impl Default for Simulation {
             tolerance: Accuracy::default().tolerance,
             steps: STEPS,
             disturbance: 0.0,
-            horizon_place: None,
         }
     }
 }
@@ -73,36 +71,16 @@ pub fn assumed_start(disturbance: f64) -> Option<String> {
 }
 
 impl Simulation {
-    /// Reads an entry if it is one of the keys; returns whether it is.
-    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
-        match entry.key {
-            "horizon" => {
-                self.horizon = Some(entry.number_within(POSITIVE)?);
-                self.horizon_place = Some(entry.span.clone());
-            }
-            "tolerance" => self.tolerance = entry.number_within(1e-15..=1e-3)?,
-            "steps" => {
-                self.steps = match entry.whole()? {
-                    steps @ 1..=MOST_STEPS => steps,
-                    other => {
-                        let message = format!("{other} is outside its range: 1 to {MOST_STEPS}");
-                        return Err(entry.error(message));
-                    }
-                };
-            }
-            _ => return Ok(false),
+    /// The keys of a table, of a document of its own or in a sweep file.
+    pub(super) fn of(table: &mut Document) -> Self {
+        let default = Self::default();
+        let tolerance = table.take("tolerance", |entry| entry.number_within(1e-15..=1e-3));
+        Self {
+            horizon: table.take("horizon", |entry| entry.number_within(POSITIVE)),
+            tolerance: tolerance.unwrap_or(default.tolerance),
+            steps: table.take("steps", read_steps).unwrap_or(default.steps),
+            ..default
         }
-        Ok(true)
-    }
-
-    /// Reads the table `[simulation]`.
-    pub(super) fn read_table(&mut self, table: &Entry) -> Result<(), SpecError> {
-        for entry in table.table()? {
-            if !self.read(&entry)? {
-                return Err(entry.unknown(&names(&SIMULATION)));
-            }
-        }
-        Ok(())
     }
 
     /// A remark on a start that is not given; none where motions are not disturbed.
@@ -111,13 +89,18 @@ impl Simulation {
         assumed_start(self.disturbance)
     }
 
-    /// Checks that the horizon, if given, is later than `switch_on`, the value of `name`.
-    pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
-        match (&self.horizon, &self.horizon_place) {
-            (Some(horizon), Some(place)) if *horizon <= switch_on => {
+    /// Checks that the horizon, given at `place`, is later than `switch_on`, the value of `name`.
+    pub(super) fn check_horizon(
+        &self,
+        place: Option<&Range<usize>>,
+        name: &str,
+        switch_on: f64,
+    ) -> Result<(), SpecError> {
+        match (self.horizon, place) {
+            (Some(horizon), Some(place)) if horizon <= switch_on => {
                 let message = format!(
                     "horizon: {} is not later than {name}, which is {}",
-                    Shown(*horizon),
+                    Shown(horizon),
                     Shown(switch_on)
                 );
                 Err(SpecError::at(place.clone(), message))
@@ -175,5 +158,12 @@ impl Simulation {
                 ..Accuracy::default()
             },
         }))
+    }
+}
+
+fn read_steps(entry: &Entry) -> Result<u64, SpecError> {
+    match entry.whole()? {
+        steps @ 1..=MOST_STEPS => Ok(steps),
+        other => Err(entry.error(format!("{other} is outside its range: 1 to {MOST_STEPS}"))),
     }
 }

@@ -1,5 +1,7 @@
 //! The values of a sweep file's keys.
 
+use std::ops::Range;
+
 use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
 use super::keys::{RANGE, TOLERANCE, names};
@@ -15,26 +17,11 @@ const LARGEST_DEGREE: f64 = 1e12;
 
 /// The values of an axis of at most `most` points.
 pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError> {
-    let (mut from, mut to, mut points, mut spacing) = (None, None, None, Spacing::Linear);
-    for entry in axis.table()? {
-        match entry.key {
-            "from" => from = Some(entry.number()?),
-            "to" => to = Some(entry.number()?),
-            "points" => points = Some(entry.whole()?),
-            "spacing" => {
-                spacing = match entry.string()? {
-                    "linear" => Spacing::Linear,
-                    "log" => Spacing::Log,
-                    other => {
-                        return Err(entry
-                            .error(format!("unknown spacing \"{other}\""))
-                            .help("known: linear, log"));
-                    }
-                }
-            }
-            _ => return Err(entry.unknown(&names(&RANGE))),
-        }
-    }
+    let mut table = axis.document(names(&RANGE))?;
+    let [from, to] = ["from", "to"].map(|end| table.take(end, Entry::number));
+    let points = table.take("points", Entry::whole);
+    let spacing = table.take("spacing", read_spacing);
+    table.finish()?;
     let missing = |name| axis.error(format!("{name} is missing"));
     let from = from.ok_or_else(|| missing("from"))?;
     let to = to.ok_or_else(|| missing("to"))?;
@@ -43,7 +30,17 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
         let message = format!("points = {points} is outside its range: 2 to {most}");
         return Err(axis.error(message));
     }
-    spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
+    spaced(from, to, points, spacing.unwrap_or(Spacing::Linear)).map_err(|e| axis.error(e.0))
+}
+
+fn read_spacing(entry: &Entry) -> Result<Spacing, SpecError> {
+    match entry.string()? {
+        "linear" => Ok(Spacing::Linear),
+        "log" => Ok(Spacing::Log),
+        other => Err(entry
+            .error(format!("unknown spacing \"{other}\""))
+            .help("known: linear, log")),
+    }
 }
 
 pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, SpecError> {
@@ -95,32 +92,27 @@ pub(super) fn read_field(entry: &Entry) -> Result<Field, SpecError> {
     })
 }
 
-pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
+/// The fields in the order of the file, with their places.
+pub(super) fn read_fields(entry: &Entry) -> Result<Vec<(Field, Range<usize>)>, SpecError> {
     let mut fields = Vec::new();
     for element in entry.array()? {
         let field = read_field(&element)?;
-        if fields.contains(&field) {
+        if fields.iter().any(|(listed, _)| *listed == field) {
             return Err(element.error(format!("\"{}\" is listed twice", field.name())));
         }
-        fields.push(field);
+        fields.push((field, element.span));
     }
     if fields.is_empty() {
         return Err(entry
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
     }
-    Ok(Field::with_bounds(fields))
+    Ok(fields)
 }
 
 pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, SpecError> {
-    let mut result = MarginalTolerance::default();
-    for entry in tolerance.table()? {
-        match entry.key {
-            "marginal" => {
-                result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
-            }
-            _ => return Err(entry.unknown(&names(&TOLERANCE))),
-        }
-    }
-    Ok(result)
+    let mut table = tolerance.document(names(&TOLERANCE))?;
+    let marginal = table.take("marginal", |entry| entry.number_within(f64::EPSILON..=0.01));
+    table.finish()?;
+    Ok(marginal.map_or_else(MarginalTolerance::default, MarginalTolerance))
 }

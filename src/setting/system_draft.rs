@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::quantity::Quantity;
 use super::system::{SystemModel, shipped};
 use super::values::Setting;
+use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError};
 
@@ -31,8 +32,22 @@ pub(super) struct SystemDraft {
 }
 
 impl SystemDraft {
+    /// The system of a sweep file, the text `whole`, if it names one. The meaning of other keys
+    /// depends on it: those about a block are refused beside it.
+    pub(super) fn of(document: &mut Document, whole: &str) -> Result<Option<Self>, SpecError> {
+        let Some(entry) = document.entry("system") else {
+            return Ok(None);
+        };
+        document.refuse(
+            &OF_THE_BLOCK,
+            "it is about a block on its spring; a system from a file has counts, roots and delays \
+             alone",
+        );
+        Self::read(&entry, whole).map(Some)
+    }
+
     /// Reads the key `system` of the text `whole`: a table, or the name of a shipped system.
-    pub(super) fn read(entry: &Entry, whole: &str) -> Result<Self, SpecError> {
+    fn read(entry: &Entry, whole: &str) -> Result<Self, SpecError> {
         let model = if entry.is_table() {
             SystemModel::of_table(entry, whole)?
         } else {
@@ -77,17 +92,6 @@ impl SystemDraft {
             let checked = of.check(entry.number()?);
             let value = checked.map_err(|why| SpecError::at(entry.span.clone(), why))?;
             self.setting.vary(&of, value);
-        }
-        Ok(())
-    }
-
-    /// Refuses a key that a sweep of a system cannot have.
-    pub(super) fn check_key(entry: &Entry) -> Result<(), SpecError> {
-        if OF_THE_BLOCK.contains(&entry.key) {
-            return Err(entry.elsewhere(
-                "it is about a block on its spring; a system from a file has counts, roots and \
-                 delays alone",
-            ));
         }
         Ok(())
     }

@@ -1,11 +1,14 @@
 //! Text that people write and read: numbers, names that are meant, TOML with places.
 //!
+//! - `document`: a table whose keys are taken one by one, each with its places
 //! - `hexadecimal`: bytes as hexadecimal digits
 //! - `nearest`: suggestions for unknown names
 //! - `number`: numbers as messages show them
 //! - `toml_reader`: TOML with the place of every key and value
 //! - `toml_size`: bounds the memory for reading TOML
 
+#[cfg(feature = "sweep")]
+pub(crate) mod document;
 #[cfg(feature = "sweep")]
 mod hexadecimal;
 #[cfg(feature = "sweep")]

@@ -2,43 +2,43 @@
 
 use std::ops::Range;
 
-use super::Draft;
+use super::SweepFile;
 use crate::setting::axis::plane_of_curves;
 use crate::setting::best_plane::gain_plane;
 use crate::setting::field::Field;
 use crate::setting::limit_spec;
-use crate::setting::needs::{Asked, Stage, no_meaning, unmet};
+use crate::setting::needs::{FieldsAsked, Stage, no_meaning, unmet};
 use crate::setting::parameter::Parameter;
 use crate::setting::search::Search;
 use crate::setting::system_draft::SystemDraft;
 use crate::setting::values::Setting;
+use crate::setting::vc_keys::VcKeys;
 use crate::text::SpecError;
 
-impl Draft {
-    /// Checks a sweep of sliding or of motions. Returns the parameters that are no axes, and the
-    /// search for the critical velocity.
-    pub(super) fn check(&self) -> Result<(Setting, Option<Search>), SpecError> {
-        let fixed = self.given.setting();
-        self.check_needs(&fixed, Stage::Protocol)?;
-        let without_v0 = self.given.law_place().is_some() && !self.asked(&fixed).needs_v0();
+impl SweepFile<'_> {
+    /// Checks a sweep of sliding or of motions. Returns the search for the critical velocity.
+    pub(super) fn check(&self) -> Result<Option<Search>, SpecError> {
+        let fixed = &self.spec.fixed;
+        self.check_needs(fixed, Stage::Protocol)?;
+        let without_v0 = self.given.law_place().is_some() && !self.asked(fixed).needs_v0();
         let optional = without_v0.then_some(Parameter::V0);
         self.given
-            .check(optional.as_slice(), self.axes_place.as_ref())?;
+            .check(optional.as_slice(), self.document.key("axes"))?;
         self.check_degrees()?;
         self.check_best()?;
-        self.check_law(&fixed)?;
-        self.check_needs(&fixed, Stage::Model)?;
-        let critical = self.check_nonlinear(&fixed)?;
-        Ok((fixed, critical))
+        self.check_law(fixed)?;
+        self.check_needs(fixed, Stage::Model)?;
+        self.check_nonlinear(fixed)
     }
 
     /// Checks a sweep of the limit of a short delay. Returns the parameters that are no axes.
     pub(super) fn check_limit(&self) -> Result<Setting, SpecError> {
-        if let Some((key, place)) = &self.foreign {
+        let mut keys = self.document.keys();
+        if let Some((key, place)) = keys.find(|(key, _)| !limit_spec::KEYS.contains(key)) {
             return Err(self.given.unmet(no_meaning(key), Some(place)));
         }
-        self.check_needs(&self.given.setting(), Stage::Protocol)?;
-        limit_spec::check(&self.given, self.axes_place.as_ref())
+        self.check_needs(&self.spec.fixed, Stage::Protocol)?;
+        limit_spec::check(&self.given, self.document.key("axes"))
     }
 
     /// Checks a sweep of a system. Returns the parameters that are no axes.
@@ -47,7 +47,7 @@ impl Draft {
         let tau = Parameter::Tau;
         if !system.given.iter().any(|(of, _)| *of == tau) {
             return Err(SpecError {
-                span: self.axes_place.clone(),
+                span: self.document.key("axes").cloned(),
                 ..SpecError::whole("tau is not given").help(format!(
                     "tau: {}, {}",
                     tau.long_name(),
@@ -61,19 +61,19 @@ impl Draft {
 
     /// Checks that boundaries are traced where degrees of stability are requested.
     fn check_degrees(&self) -> Result<(), SpecError> {
-        let Some(place) = &self.degrees_place else {
+        let Some(place) = self.document.key("degree_of_stability") else {
             return Ok(());
         };
         let refuse = |message: &str, help: &str| {
             Err(SpecError::at(place.clone(), format!("degree_of_stability: {message}")).help(help))
         };
-        if self.boundaries == Some(false) {
+        if self.spec.boundaries == Some(false) {
             return refuse(
                 "its curves are traced with the boundaries, and boundaries = false",
                 "set boundaries = true, or leave degree_of_stability out",
             );
         }
-        if plane_of_curves(&self.axes).is_none() {
+        if plane_of_curves(&self.spec.axes).is_none() {
             return refuse(
                 "there is no plane for its curves",
                 "two axes of linear stability are needed, such as a gain and tau, each with two \
@@ -85,8 +85,8 @@ impl Draft {
 
     /// Checks that the sweep has axes for a gain and the delay, the planes of best settings.
     fn check_best(&self) -> Result<(), SpecError> {
-        match &self.best {
-            Some(place) if gain_plane(&self.axes).is_none() => {
+        match self.document.key("best") {
+            Some(place) if self.spec.best && gain_plane(&self.spec.axes).is_none() => {
                 let message =
                     "best needs an axis of a gain and one of the delay, with two points or more";
                 Err(SpecError::at(place.clone(), message).help(
@@ -101,7 +101,7 @@ impl Draft {
     /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
         let mut worst = fixed.clone();
-        for axis in &self.axes {
+        for axis in &self.spec.axes {
             let (smallest, largest) = axis.range();
             // With a given slope at rest, μ0 grows with v_s and with the magnitude of the slope.
             let Some(parameter) = axis.parameter.known() else {
@@ -121,20 +121,17 @@ impl Draft {
 }
 
 /// What fields need, and what has no effect on them.
-impl Draft {
+impl SweepFile<'_> {
     /// Whether a field of this kind is asked for.
     pub(super) fn asks(&self, of: fn(Field) -> bool) -> bool {
         self.asked.iter().any(|&field| of(field))
     }
 
-    fn asked<'a>(&'a self, fixed: &'a Setting) -> Asked<'a> {
-        let curves = self.boundaries == Some(true) || !self.degrees.is_empty();
-        Asked {
+    fn asked<'a>(&'a self, fixed: &'a Setting) -> FieldsAsked<'a> {
+        FieldsAsked {
             fields: &self.asked,
             fixed,
-            axes: &self.axes,
-            limit: self.is_limit,
-            planes: curves || self.best.is_some(),
+            ..FieldsAsked::of(&self.spec)
         }
     }
 
@@ -152,7 +149,7 @@ impl Draft {
     fn check_nonlinear(&self, fixed: &Setting) -> Result<Option<Search>, SpecError> {
         let kinds = [Field::of_basin, Field::of_vc, Field::of_motion];
         let [basin, vc, motion] = kinds.map(|of| self.asks(of));
-        match self.basin.place() {
+        match self.document.key("basin") {
             Some(place) if !basin => {
                 let share = Field::BasinShare.name();
                 let help = format!("starts are followed for the field {share}");
@@ -172,11 +169,17 @@ impl Draft {
         self.check_needs(fixed, Stage::Values)?;
         let phase = Parameter::SwitchOnPhase;
         if vc {
-            return self.vc.search(self.given.place(phase)).map(Some);
+            return self
+                .vc
+                .search(&self.document, self.given.place(phase))
+                .map(Some);
         }
         if motion {
             let latest = self.asked(fixed).values(phase).fold(0.0, f64::max);
-            self.simulation.check_horizon(phase.name(), latest)?;
+            let horizon = self.horizon.as_ref();
+            self.spec
+                .simulation
+                .check_horizon(horizon, phase.name(), latest)?;
         }
         Ok(None)
     }
@@ -187,8 +190,8 @@ impl Draft {
         let start = Parameter::ALL.into_iter().filter(|p| p.of_start());
         let start = start.filter_map(|p| Some((p.name(), self.given.place(p)?)));
         start.chain(
-            self.simulation_place
-                .as_ref()
+            self.document
+                .key("simulation")
                 .map(|place| ("simulation", place)),
         )
     }
@@ -230,7 +233,7 @@ impl Draft {
 
     /// Checks that there are no keys of the critical velocity without a field of it.
     fn check_no_search(&self) -> Result<(), SpecError> {
-        match self.vc.given().next() {
+        match VcKeys::given(&self.document) {
             Some((key, place)) => Err(no_effect(key, place).help(format!(
                 "it is for the fields {}",
                 names(Field::of_vc).join(", ")

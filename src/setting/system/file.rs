@@ -8,6 +8,7 @@ use super::parameter::{OwnParameter, WIDEST};
 use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
 use crate::setting::map_names;
 use crate::setting::parameter::Parameter;
+use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
@@ -18,6 +19,7 @@ const LONGEST_NAME: usize = 40;
 
 /// The keys of a system.
 const KEYS: [&str; 7] = ["title", "P", "Q", "B", "A", "parameters", "speed_axis"];
+const POLYNOMIALS: [&str; 4] = ["P", "Q", "B", "A"];
 
 /// An expression as written in a text.
 struct Written {
@@ -72,15 +74,6 @@ impl Written {
     }
 }
 
-/// The parts of a system read so far, before they are known to be consistent.
-#[derive(Default)]
-struct Draft {
-    title: String,
-    polynomials: Vec<(Written, Range<usize>)>,
-    parameters: Vec<(OwnParameter, Range<usize>)>,
-    speed_axis: Option<SpeedAxis>,
-}
-
 impl std::str::FromStr for SystemModel {
     type Err = SpecError;
 
@@ -105,117 +98,93 @@ impl SystemModel {
         whole: &str,
         place: Option<&Range<usize>>,
     ) -> Result<Self, SpecError> {
-        let mut draft = Draft::default();
-        for entry in entries {
-            let polynomial = match entry.key {
-                "title" => {
-                    entry.line()?.clone_into(&mut draft.title);
-                    continue;
-                }
-                "parameters" => {
-                    draft.read_parameters(&entry)?;
-                    continue;
-                }
-                "speed_axis" => {
-                    draft.speed_axis = Some(read_speed_axis(&entry)?);
-                    continue;
-                }
-                "P" => "P",
-                "Q" => "Q",
-                "B" => "B",
-                "A" => "A",
-                _ => return Err(entry.unknown(&KEYS)),
-            };
-            let written = Written::of(polynomial, &entry, whole)?;
-            draft.polynomials.push((written, entry.key_span.clone()));
-        }
-        draft.finish(place)
-    }
-}
-
-impl Draft {
-    fn read_parameters(&mut self, table: &Entry) -> Result<(), SpecError> {
-        for entry in table.table()? {
-            check_name(&entry)?;
-            if self.parameters.len() == MOST_PARAMETERS {
-                let message = format!("more than {MOST_PARAMETERS} parameters");
-                return Err(SpecError::at(entry.key_span.clone(), message));
-            }
-            let own = OwnParameter {
-                index: self.parameters.len(),
-                ..read_parameter(&entry)?
-            };
-            self.parameters.push((own, entry.key_span.clone()));
-        }
-        Ok(())
-    }
-
-    fn finish(self, place: Option<&Range<usize>>) -> Result<SystemModel, SpecError> {
+        let mut document = Document::of(entries, KEYS);
+        let title = document.take("title", Entry::line).unwrap_or_default();
+        let parameters = document
+            .take("parameters", read_parameters)
+            .unwrap_or_default();
+        let speed_axis = document.take("speed_axis", read_speed_axis);
+        let polynomials =
+            POLYNOMIALS.map(|name| document.take(name, |entry| Written::of(name, entry, whole)));
+        document.finish()?;
+        let names = parameters.iter().map(|(own, _)| &*own.name);
+        let names: Vec<&str> = names.chain([Parameter::Tau.name()]).collect();
         let missing = |message: &str| SpecError {
             span: place.cloned(),
             ..SpecError::whole(message)
                 .help("either P and Q, or the open loop B and the feedback A: expressions in s")
         };
-        let by_name = |name: &str| self.polynomials.iter().find(|(of, _)| of.name == name);
-        let names = self.parameters.iter().map(|(own, _)| &*own.name);
-        let names: Vec<&str> = names.chain([Parameter::Tau.name()]).collect();
-        let form = match (by_name("P"), by_name("Q"), by_name("B"), by_name("A")) {
-            (Some((p, _)), Some((q, _)), None, None) => {
-                Form::Direct([p.read(&names)?, q.read(&names)?])
+        let form = match &polynomials {
+            [Some(p), Some(q), None, None] => Form::Direct([p.read(&names)?, q.read(&names)?]),
+            [None, None, Some(open), Some(gain)] => {
+                check_feedback_names(&parameters)?;
+                let (open, place) = (open.read(&names)?, &gain.span);
+                let gain = gain.read(&names)?;
+                check_degrees(&open, &gain, place)?;
+                Form::Feedback([open, gain])
             }
-            (None, None, Some((open, _)), Some((gain, _))) => {
-                self.check_feedback_names()?;
-                let (open, gain) = (open.read(&names)?, (gain.read(&names)?, &gain.span));
-                check_degrees(&open, &gain.0, gain.1)?;
-                Form::Feedback([open, gain.0])
-            }
-            (None, None, None, None) => return Err(missing("a system needs its polynomials")),
-            (Some((one, _)), None, None, None)
-            | (None, Some((one, _)), None, None)
-            | (None, None, Some((one, _)), None)
-            | (None, None, None, Some((one, _))) => {
-                return Err(missing(&format!("{} alone makes no system", one.name)));
-            }
-            _ => {
-                let place = self.polynomials.last().map(|(_, place)| place.clone());
+            [None, None, None, None] => return Err(missing("a system needs its polynomials")),
+            some => {
+                if let [one] = some.iter().flatten().collect::<Vec<_>>()[..] {
+                    return Err(missing(&format!("{} alone makes no system", one.name)));
+                }
+                let mut keys = document.keys().rev();
+                let last = keys.find(|(key, _)| POLYNOMIALS.contains(key));
                 return Err(SpecError {
-                    span: place,
+                    span: last.map(|(_, place)| place.clone()),
                     ..missing("P and Q are one form, B and A another: not both")
                 });
             }
         };
-        let model = SystemModel {
-            title: self.title,
+        let (parameters, places): (Vec<_>, Vec<_>) = parameters.into_iter().unzip();
+        let model = Self {
+            title: title.to_owned(),
             form,
-            parameters: self
-                .parameters
-                .iter()
-                .map(|(own, _)| Arc::new(own.clone()))
-                .collect(),
-            speed_axis: self.speed_axis,
+            parameters,
+            speed_axis,
         };
-        for (index, (own, place)) in self.parameters.iter().enumerate() {
-            if !model.polynomials().any(|(_, of)| of.tape.uses(index)) {
+        for (own, place) in model.parameters.iter().zip(places) {
+            if !model.polynomials().any(|(_, of)| of.tape.uses(own.index)) {
                 let message = format!("{} stands in no polynomial: it has no effect", own.name);
-                return Err(SpecError::at(place.clone(), message).help("leave it out"));
+                return Err(SpecError::at(place, message).help("leave it out"));
             }
         }
         Ok(model)
     }
+}
 
-    /// Refuses the names of memory and latency, which every system in feedback form has.
-    fn check_feedback_names(&self) -> Result<(), SpecError> {
-        let taken = |own: &OwnParameter| matches!(&*own.name, "memory" | "latency");
-        match self.parameters.iter().find(|(own, _)| taken(own)) {
-            Some((own, place)) => {
-                let message = format!(
-                    "{} is reserved: every system of B and A has it as a parameter",
-                    own.name
-                );
-                Err(SpecError::at(place.clone(), message).help("leave it out"))
-            }
-            None => Ok(()),
+/// A parameter, with the place of its name.
+type PlacedParameter = (Arc<OwnParameter>, Range<usize>);
+
+fn read_parameters(table: &Entry) -> Result<Vec<PlacedParameter>, SpecError> {
+    let mut parameters = Vec::new();
+    for entry in table.table()? {
+        check_name(&entry)?;
+        if parameters.len() == MOST_PARAMETERS {
+            let message = format!("more than {MOST_PARAMETERS} parameters");
+            return Err(SpecError::at(entry.key_span.clone(), message));
         }
+        let own = OwnParameter {
+            index: parameters.len(),
+            ..read_parameter(&entry)?
+        };
+        parameters.push((Arc::new(own), entry.key_span.clone()));
+    }
+    Ok(parameters)
+}
+
+/// Refuses the names of memory and latency, which every system in feedback form has.
+fn check_feedback_names(parameters: &[PlacedParameter]) -> Result<(), SpecError> {
+    let taken = |own: &OwnParameter| matches!(&*own.name, "memory" | "latency");
+    match parameters.iter().find(|(own, _)| taken(own)) {
+        Some((own, place)) => {
+            let message = format!(
+                "{} is reserved: every system of B and A has it as a parameter",
+                own.name
+            );
+            Err(SpecError::at(place.clone(), message).help("leave it out"))
+        }
+        None => Ok(()),
     }
 }
 
@@ -272,23 +241,18 @@ fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
         })?;
         return Ok(own);
     }
-    let mut place = None;
-    for entry in of.table()? {
-        match entry.key {
-            "long_name" => entry.line()?.clone_into(&mut own.long_name),
-            "unit" => read_unit(&entry)?.clone_into(&mut own.unit),
-            "default" => {
-                own.default = entry.number_within(widest.clone())?;
-                place = Some(entry.span.clone());
-            }
-            "minimum" => own.minimum = entry.number_within(widest.clone())?,
-            "maximum" => own.maximum = entry.number_within(widest.clone())?,
-            _ => {
-                let known = ["long_name", "default", "minimum", "maximum", "unit"];
-                return Err(entry.unknown(&known));
-            }
-        }
+    let mut table = of.document(["long_name", "default", "minimum", "maximum", "unit"])?;
+    let number = |entry: &Entry| entry.number_within(widest.clone());
+    if let Some(name) = table.take("long_name", Entry::line) {
+        name.clone_into(&mut own.long_name);
     }
+    if let Some(unit) = table.take("unit", read_unit) {
+        unit.clone_into(&mut own.unit);
+    }
+    own.default = table.take("default", number).unwrap_or(own.default);
+    own.minimum = table.take("minimum", number).unwrap_or(own.minimum);
+    own.maximum = table.take("maximum", number).unwrap_or(own.maximum);
+    table.finish()?;
     if own.minimum > own.maximum {
         let (from, to) = (own.minimum, own.maximum);
         return Err(of.error(format!(
@@ -296,7 +260,7 @@ fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
         )));
     }
     if own.check(own.default).is_err() {
-        let span = place.unwrap_or_else(|| of.key_span.clone());
+        let span = table.value("default").unwrap_or(&of.key_span).clone();
         let message = format!(
             "{}: its default {} is not among {}",
             of.path,
@@ -319,23 +283,25 @@ fn read_unit<'t>(entry: &Entry<'t>) -> Result<&'t str, SpecError> {
 }
 
 fn read_speed_axis(table: &Entry) -> Result<SpeedAxis, SpecError> {
-    let (mut name, mut unit) = (None, SpeedUnit::RevolutionsPerMinute);
-    for entry in table.table()? {
-        match entry.key {
-            "name" => name = Some(entry.line()?.to_owned()),
-            "period" => {
-                let tau = Parameter::Tau.name();
-                if entry.string()? != tau {
-                    let message = format!("expected \"{tau}\": the period is the delay");
-                    return Err(entry.error(message));
-                }
-            }
-            "unit" => unit = read_speed_unit(&entry)?,
-            _ => return Err(entry.unknown(&["name", "period", "unit"])),
-        }
+    let mut keys = table.document(["name", "period", "unit"])?;
+    let name = keys.take("name", Entry::line);
+    keys.take("period", read_period);
+    let unit = keys.take("unit", read_speed_unit);
+    keys.finish()?;
+    Ok(SpeedAxis {
+        name: name
+            .ok_or_else(|| table.error("name is missing"))?
+            .to_owned(),
+        unit: unit.unwrap_or(SpeedUnit::RevolutionsPerMinute),
+    })
+}
+
+fn read_period(entry: &Entry) -> Result<(), SpecError> {
+    let tau = Parameter::Tau.name();
+    if entry.string()? == tau {
+        return Ok(());
     }
-    let name = name.ok_or_else(|| table.error("name is missing"))?;
-    Ok(SpeedAxis { name, unit })
+    Err(entry.error(format!("expected \"{tau}\": the period is the delay")))
 }
 
 fn read_speed_unit(entry: &Entry) -> Result<SpeedUnit, SpecError> {
