@@ -27,8 +27,9 @@ impl Places {
             to[self.at..][..from.len()].copy_from_slice(from);
             return;
         }
-        for (i, value) in from.iter().enumerate() {
-            to[self.of(i)] = *value;
+        let places = to[self.at..].iter_mut().step_by(self.stride);
+        for (value, place) in from.iter().zip(places) {
+            *place = *value;
         }
     }
 
@@ -61,6 +62,8 @@ pub(super) struct SlowLine<'a> {
     pub delays: &'a [f64],
     pub places: Places,
     pub numbers: Numbers,
+    /// Whether it is a line of the letter's own model; none without a sliding state.
+    pub of_letter: Option<bool>,
     /// Once it is set, no further cells are computed.
     pub stop: &'a Stop,
 }

@@ -59,7 +59,8 @@ impl MarginColumns {
 
     /// Computes the cells of a line. The status gains [`NOT_CONVERGED`] where a search was given
     /// up. Beyond the letter's own feedback the latency margin is told with the line itself.
-    pub(super) fn fill(&mut self, line: &SlowLine, letter: bool, buffers: &mut TileBuffers) {
+    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+        let Some(letter) = line.of_letter else { return };
         let besides = |of: &OfMargins| *of != OfMargins::Latency;
         if !letter && !self.wanted.iter().any(besides) {
             return;

@@ -5,7 +5,9 @@
 //! - `best_planes`: best settings of a whole sweep, plane by plane
 //! - `boundaries`: crossing curves of a whole sweep, plane by plane
 //! - `buffers`: the cells of a tile in memory, a column for each field
+//! - `families`: the families of fields whose cells take long
 //! - `general_columns`: the cells of a line of a general system: counts, margins, roots, reasons
+//! - `letter_columns`: the cells of a line of the letter's own model: counts, margins, roots
 //! - `limit_columns`: the fields of the limit of a short delay: the closed form, approximations,
 //!   errors
 //! - `line`: a line of cells: its places, and the loop over slow cells
@@ -23,7 +25,9 @@ mod basin_columns;
 pub mod best_planes;
 pub mod boundaries;
 pub mod buffers;
+mod families;
 mod general_columns;
+mod letter_columns;
 mod limit_columns;
 mod line;
 mod lines;

@@ -45,8 +45,11 @@ impl<'p> SlipColumns<'p> {
     }
 
     /// Follows the motions of a line into `buffers`. The status gains
-    /// [`NOT_CONVERGED`] where a motion stays undecided.
+    /// [`NOT_CONVERGED`] where a motion stays undecided. Motions need a sliding state.
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+        if line.of_letter.is_none() {
+            return;
+        }
         line.each(|here| {
             let motion = self.motion_at(&here, line.stop);
             if motion.outcome == Outcome::Undecided {
