@@ -1,9 +1,9 @@
-//! Small sweeps of every kind.
+//! Small sweeps of every kind of field, system, feedback and friction.
 
 use slipmap::setting::SweepSpec;
 use slipmap::sweep::Plan;
 
-pub(crate) const SWEEPS: [&str; 7] = [
+pub(crate) const SWEEPS: [&str; 11] = [
     "fields = [\"n_unstable\", \"abscissa\", \"delay_margin\"]\nboundaries = true\n\
      degree_of_stability = [0.05]\nbest = true\n[axes]\nmu_prime = [-0.1, -0.3]\n\
      alpha_v = [-1, -0.5, 0]\ntau = [0, 2, 4, 6]\n\
@@ -20,6 +20,18 @@ pub(crate) const SWEEPS: [&str; 7] = [
     "fields = [\"outcome\", \"settle_time\", \"n_min\"]\n[axes]\nalpha_v = [-0.33, 0]\ntau = [4, 5]\n\
      [fixed]\nv0 = 0.35\n[friction]\nlaw = \"table\"\nspeeds = [0, 0.2, 1]\nmu_k = [0.9, 0.7, 0.6]\n",
     "system = \"turning\"\nboundaries = true\n[axes]\nwidth = [0, 0.3]\ntau = [1, 4, 8]\n",
+    "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = true\ndegree_of_stability = [0.02]\n\
+     best = true\n[axes]\nalpha_v = [-0.6, -0.3]\ntau = [2, 4, 6]\n\
+     [fixed]\nmu_prime = -0.3\nmemory = 0.4\n",
+    "fields = [\"n_unstable\", \"latency_margin\"]\n[axes]\nalpha_n = [-0.6, -0.3]\n\
+     tau = [2, 4]\n[fixed]\nmu_prime = -0.1\nlatency = 0.2\n",
+    "fields = [\"n_unstable\", \"delay_margin\", \"gain_margin_lower\"]\n[axes]\n\
+     load_lag = [0.1, 0.3]\ntau = [1, 4]\n[fixed]\nmu_prime = -0.1\nalpha_n = -0.4\n\
+     velocity_lag = 0.2\nsensor_lag = 0.1\n",
+    "fields = [\"n_unstable\", \"stiffness_ratio\", \"essential_abscissa\"]\n[axes]\n\
+     v0 = [0.05, 0.2]\ntau = [1, 4]\n[fixed]\nalpha_v = -0.3\n[friction]\n\
+     law = \"rate-and-state\"\nmu0 = 0.6\nv_star = 0.1\ndirect_effect = 0.02\n\
+     evolution_effect = 0.03\nslip_distance = 0.05\n",
 ];
 
 /// The plan of a sweep.

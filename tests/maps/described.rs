@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::every_kind::{SWEEPS, plan};
 use crate::map;
+use hdf5::types::FixedUnicode;
 use hdf5::{Attribute, Dataset, Location};
 use slipmap::answers::Trace;
 use slipmap::setting::CaseSpec;
@@ -42,7 +43,10 @@ fn is_of(dataset: &Dataset, element: Element) -> bool {
     }
 }
 
-/// Whether an attribute has the type and the numbers that are described.
+/// More bytes than any text has here.
+const LONGEST: usize = 1 << 14;
+
+/// Whether an attribute has the type and the text or numbers that are described.
 fn holds(attribute: &Attribute, value: &Value) -> bool {
     macro_rules! equal {
         ($kind:ty, $numbers:expr) => {{
@@ -55,8 +59,9 @@ fn holds(attribute: &Attribute, value: &Value) -> bool {
     }
     match value {
         Value::Text(text) => {
+            let read = attribute.read_scalar::<FixedUnicode<LONGEST>>();
             // With the null byte at the end.
-            attribute.dtype().unwrap().size() == text.len() + 1
+            attribute.dtype().unwrap().size() == text.len() + 1 && read.unwrap().as_str() == text
         }
         Value::Dimensions => !attribute.shape().is_empty(),
         Value::I8(numbers) => equal!(i8, numbers),
