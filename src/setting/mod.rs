@@ -7,10 +7,10 @@
 //! - `case_file`: the case file: one motion, read and checked once
 //! - `catalogue`: enumerations with a table of facts, one row for each value
 //! - `command`: the command line for a setting
-//! - `draft`: reads a sweep file, once
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `friction_table`: the points of a table from a sweep file or from two columns
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
+//! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
 //!   constructor
@@ -29,9 +29,9 @@
 //! - `source`: what fields are computed from
 //! - `spec`: a sweep as described by its file
 //! - `spec_values`: the values of a sweep file's keys
+//! - `sweep_file`: reads a sweep file, once
 //! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
 //!   values of them
-//! - `system_draft`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `table_file`: a sweep or case file with the contents of the files that it names
 //! - `units`: the units of a sweep
 //! - `values`: one value for every parameter, and which of them must be given
@@ -44,10 +44,10 @@ mod beyond_curve;
 pub mod case_file;
 mod catalogue;
 pub mod command;
-mod draft;
 pub mod field;
 pub mod friction_table;
 mod given;
+mod given_system;
 pub mod keys;
 pub mod law_kind;
 mod limit_spec;
@@ -65,8 +65,8 @@ pub mod simulation;
 pub mod source;
 pub mod spec;
 mod spec_values;
+mod sweep_file;
 pub mod system;
-mod system_draft;
 pub mod table_file;
 pub mod units;
 pub mod values;

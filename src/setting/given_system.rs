@@ -23,7 +23,7 @@ const OF_THE_BLOCK: [&str; 8] = [
 ];
 
 /// The system of a sweep, and the values that the file gives its parameters.
-pub(super) struct SystemDraft {
+pub(super) struct GivenSystem {
     pub model: Arc<SystemModel>,
     /// The values of parameters that are no axes.
     pub setting: Setting,
@@ -31,7 +31,7 @@ pub(super) struct SystemDraft {
     pub given: Vec<(Quantity, Range<usize>)>,
 }
 
-impl SystemDraft {
+impl GivenSystem {
     /// The system of a sweep file, the text `whole`, if it names one. The meaning of other keys
     /// depends on it: those about a block are refused beside it.
     pub(super) fn of(document: &mut Document, whole: &str) -> Result<Option<Self>, SpecError> {

@@ -10,6 +10,7 @@ use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
+use super::given_system::GivenSystem;
 use super::keys::{SIMULATION, SWEEP, names};
 use super::map_names::MOST_AXES;
 use super::quantity::Quantity;
@@ -19,7 +20,6 @@ use super::spec::SweepSpec;
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
-use super::system_draft::SystemDraft;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
@@ -47,7 +47,7 @@ impl SweepSpec {
     pub fn read(text: &str, most_points: u64) -> Result<Self, SpecError> {
         let parsed = parse(text)?;
         let mut document = Document::of(entries(parsed.get_ref(), ""), names(&SWEEP));
-        let system = SystemDraft::of(&mut document, text)?;
+        let system = GivenSystem::of(&mut document, text)?;
         document.refuse(
             &["switch_on", "horizon", "trace", "steps"],
             "it is a key of a case file, of one motion: `slipmap simulate` takes it; in a sweep, \
@@ -107,7 +107,7 @@ struct SweepFile<'t> {
     /// The sweep, without what follows from several keys.
     spec: SweepSpec,
     /// The system, where it is not the letter's.
-    system: Option<SystemDraft>,
+    system: Option<GivenSystem>,
     given: GivenParameters,
     /// The fields in the order of the file, and their places.
     asked: Vec<Field>,
@@ -129,9 +129,9 @@ fn read_simulation(table: &Entry) -> Result<(Simulation, Option<Range<usize>>), 
 /// Reads the tables of parameters: of the system, or of the block.
 fn read_parameters(
     document: &mut Document,
-    mut system: Option<SystemDraft>,
+    mut system: Option<GivenSystem>,
     most_points: u64,
-) -> (Option<SystemDraft>, GivenParameters, Vec<Axis>) {
+) -> (Option<GivenSystem>, GivenParameters, Vec<Axis>) {
     let (mut given, mut axes) = (GivenParameters::default(), Vec::new());
     let tables = ["axes", "fixed", "friction", "start"];
     document.each(&tables, |table| match (table.key, &mut system) {

@@ -6,11 +6,11 @@ use super::SweepFile;
 use crate::setting::axis::plane_of_curves;
 use crate::setting::best_plane::gain_plane;
 use crate::setting::field::Field;
+use crate::setting::given_system::GivenSystem;
 use crate::setting::limit_spec;
 use crate::setting::needs::{FieldsAsked, Stage, no_meaning, unmet};
 use crate::setting::parameter::Parameter;
 use crate::setting::search::Search;
-use crate::setting::system_draft::SystemDraft;
 use crate::setting::values::Setting;
 use crate::setting::vc_keys::VcKeys;
 use crate::text::SpecError;
@@ -42,7 +42,7 @@ impl SweepFile<'_> {
     }
 
     /// Checks a sweep of a system. Returns the parameters that are no axes.
-    pub(super) fn check_system(&self, system: &SystemDraft) -> Result<Setting, SpecError> {
+    pub(super) fn check_system(&self, system: &GivenSystem) -> Result<Setting, SpecError> {
         self.check_degrees()?;
         let tau = Parameter::Tau;
         if !system.given.iter().any(|(of, _)| *of == tau) {
