@@ -14,7 +14,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use slipmap::linear::margins::{self, Beyond, Case, Limits, Margins, Setting, SlidingLaw};
+use slipmap::linear::margins::{self, Beyond, Case, Limits, MarginSearch, Setting, SlidingLaw};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator, Table};
 
@@ -103,13 +103,13 @@ fn ways(limits: &[Limits]) -> Vec<Way<'_>> {
         (
             "gain",
             Box::new(|s| {
-                black_box(Margins::default().gain(s));
+                black_box(MarginSearch::default().gain(s));
             }),
         ),
         (
             "slope",
             Box::new(|s| {
-                black_box(Margins::default().slope(s));
+                black_box(MarginSearch::default().slope(s));
             }),
         ),
         (
@@ -121,7 +121,7 @@ fn ways(limits: &[Limits]) -> Vec<Way<'_>> {
         (
             "phase and latency",
             Box::new(|s| {
-                black_box(Margins::default().of_loop(s));
+                black_box(MarginSearch::default().of_loop(s));
             }),
         ),
         ("all of these at a decay rate of 0.02", Box::new(with_decay)),
@@ -140,7 +140,7 @@ fn with_decay(setting: &Setting) {
         ..*setting
     };
     if with.stable() {
-        let mut search = Margins::default();
+        let mut search = MarginSearch::default();
         black_box((
             search.gain(&with),
             search.slope(&with),
@@ -181,7 +181,7 @@ fn beyond(settings: &[Setting]) {
         let with = |setting: &Setting| Case::beyond(*setting, beyond);
         let stable = settings.iter().filter(|s| with(s).stable());
         let stable: Vec<Setting> = stable.take(BEYOND_SETTINGS).copied().collect();
-        let mut search = Margins::default();
+        let mut search = MarginSearch::default();
         let of = |of: &mut dyn FnMut(Case)| timed(&stable, |s| of(with(s))).0;
         let gain = of(&mut |case| {
             black_box(search.gain(&case));
@@ -272,7 +272,7 @@ fn radii_of_laws() {
 
 fn main() {
     let settings = settings();
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let limits: Vec<Limits> = settings.iter().map(|s| search.gain(s)).collect();
     let mut ways = ways(&limits);
     let mut times = vec![Vec::new(); ways.len()];

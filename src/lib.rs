@@ -23,12 +23,11 @@
 //! | [`explore`] | requests about a point or a plane, as plain data | `explore` |
 //! | [`store`] | map and trace files | `store` |
 //! | [`maps`] | from a plan to its map; checks and display of maps | `store` |
-//! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
-//! | [`letter`] | every claim of the letter, computed again | `cli` |
 //!
-//! `cli`, the default, includes all features. With `default-features = false` the first five
-//! modules remain, without libhdf5 and without a C compiler.
+//! Beside them stands what belongs to the program alone: the server, the claims of the letter, the
+//! command line. `cli`, the default, includes all features. With `default-features = false` the
+//! first five modules remain, without libhdf5 and without a C compiler.
 //!
 //! # Example
 //!
@@ -52,6 +51,12 @@
 //! # Ok::<(), slipmap::model::ModelError>(())
 //! ```
 
+// Code that only other features use is compiled without them too.
+#![cfg_attr(
+    not(feature = "cli"),
+    allow(dead_code, unreachable_pub, unused_imports)
+)]
+
 /// Version of this library and of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -73,7 +78,7 @@ pub mod equations {}
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod explore;
 #[cfg(feature = "cli")]
-pub mod letter;
+pub(crate) mod letter;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
 #[cfg(feature = "store")]
@@ -86,7 +91,7 @@ pub mod report;
 #[cfg(test)]
 mod revision;
 #[cfg(feature = "serve")]
-pub mod serve;
+pub(crate) mod serve;
 #[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod setting;

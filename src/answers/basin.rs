@@ -2,7 +2,7 @@
 //! (Menck et al., Nature Physics 9, 89, 2013).
 //!
 //! Starts are points of a Sobol sequence, which fills a box more evenly than random points. There
-//! are [`SCRAMBLINGS`] independent scramblings of it by Owen's method. Each alone gives an unbiased
+//! are `SCRAMBLINGS` independent scramblings of it by Owen's method. Each alone gives an unbiased
 //! share, so the spread between them gives the standard error of their mean; a single unscrambled
 //! sequence would give no error. The scramblings are the same in all cells. Shares therefore depend
 //! on the setting alone, and neighbouring ones differ by less than their errors.
@@ -23,7 +23,7 @@ use crate::slip::motion::{Integrator, Motion};
 use crate::slip::outcome::Outcome;
 
 /// 95 % of Student's distribution lie within this many standard errors, if these come from
-/// [`SCRAMBLINGS`] values.
+/// `SCRAMBLINGS` values.
 pub const STUDENT_95: f64 = 2.131_449_545_559_323;
 
 /// With 95 % confidence, a part of the region without any start is no larger than this many starts'
@@ -99,7 +99,7 @@ pub struct Asked {
 /// One of the starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// Which of the [`SCRAMBLINGS`].
+    /// Which of the `SCRAMBLINGS`.
     pub scrambling: u32,
     /// Its number in that scrambling.
     pub number: u32,
@@ -149,7 +149,7 @@ impl Asked {
     /// The same question with at most `most` starts, which are different ones. They are followed by
     /// collocation instead of Taylor's method, with an error of at least `tolerance` per step.
     #[must_use]
-    pub fn again(self, most: u32, tolerance: f64) -> Self {
+    pub(crate) fn again(self, most: u32, tolerance: f64) -> Self {
         let mut case = self.case;
         case.accuracy.integrator = Integrator::Collocation;
         case.accuracy.tolerance = case.accuracy.tolerance.max(tolerance);
@@ -169,7 +169,7 @@ impl Asked {
 
     /// The region of the starts.
     #[must_use]
-    pub fn region(&self) -> Region {
+    pub(crate) fn region(&self) -> Region {
         self.region
     }
 
@@ -261,7 +261,7 @@ pub struct Follower<'a> {
 impl Follower<'_> {
     /// The same, but motions end once `stop` is set; their outcomes are then meaningless.
     #[must_use]
-    pub fn heeding(self, stop: &Stop) -> Self {
+    pub(crate) fn heeding(self, stop: &Stop) -> Self {
         let stop = stop.clone();
         Self { stop, ..self }
     }

@@ -2,7 +2,7 @@
 
 use crate::linear::general::{DelayLine, System};
 use crate::linear::margins::{
-    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach,
+    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, MarginSearch, Radius, Reach,
     SlidingLaw,
 };
 use crate::model::stop::Stop;
@@ -111,12 +111,12 @@ impl Around {
     }
 
     /// The factors of both gains at which stability, or the required decay, is lost.
-    pub fn gain(&self, search: &mut Margins) -> Limits {
+    pub fn gain(&self, search: &mut MarginSearch) -> Limits {
         of!(&self.of, case => search.gain(case))
     }
 
     /// The phase margin in radians, the latency margin in units of time.
-    pub fn of_loop(&self, search: &mut Margins) -> LoopMargins {
+    pub fn of_loop(&self, search: &mut MarginSearch) -> LoopMargins {
         let found = of!(&self.of, case => search.of_loop(case));
         LoopMargins {
             latency: found.latency * self.oscillator.time_unit(),
@@ -131,12 +131,12 @@ impl Around {
     }
 
     /// The latency margin alone, in units of time.
-    pub fn latency(&self, search: &mut Margins) -> f64 {
+    pub fn latency(&self, search: &mut MarginSearch) -> f64 {
         of!(&self.of, case => search.latency(case)) * self.oscillator.time_unit()
     }
 
     /// The phase margin alone.
-    pub fn phase(&self, search: &mut Margins) -> f64 {
+    pub fn phase(&self, search: &mut MarginSearch) -> f64 {
         of!(&self.of, case => search.phase(case))
     }
 
@@ -156,7 +156,7 @@ impl Around {
     }
 
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
-    pub fn third(&self, search: &mut Margins) -> (Parameter, Limits) {
+    pub fn third(&self, search: &mut MarginSearch) -> (Parameter, Limits) {
         if let Some((law, v0)) = self.sliding() {
             let limits = of!(&self.of, case => margins::velocity(case, &law, v0));
             return (Parameter::V0, limits);

@@ -9,17 +9,17 @@ use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 
 /// The most samples of a trace: some 300 MB.
-pub const MOST_SAMPLES: usize = 2_000_000;
+pub(crate) const MOST_SAMPLES: usize = 2_000_000;
 
 /// Modes by their numbers in a trace, with their names.
-pub const MODES: [(Mode, &str); 3] = [
+pub(crate) const MODES: [(Mode, &str); 3] = [
     (Mode::Stick, "stick"),
     (Mode::Forwards, "forwards"),
     (Mode::Backwards, "backwards"),
 ];
 
 /// Events by their numbers in a trace, with their names.
-pub const EVENTS: [(Event, &str); 5] = [
+pub(crate) const EVENTS: [(Event, &str); 5] = [
     (Event::Release, "release"),
     (Event::Stick, "stick"),
     (Event::Reversal, "reversal"),

@@ -96,7 +96,7 @@
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation
 //! Problems* (Tata Institute 1987); Doedel, *Lecture notes on numerical analysis of nonlinear
 //! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it are
-//! in [`options`], with their reasons. The predictor is in `step_control`, with a list of all rules
+//! in `options`, with their reasons. The predictor is in `step_control`, with a list of all rules
 //! for step sizes.
 //!
 //! - `observers`: what a search observes of a motion: its last stops, a slip that goes on for good,
@@ -120,7 +120,7 @@ mod follow;
 pub mod limit;
 mod memoryless;
 mod observers;
-pub mod options;
+pub(crate) mod options;
 mod problem;
 mod ramp;
 mod regime;

@@ -31,7 +31,7 @@ pub enum Regime {
 impl Regime {
     /// Whether stick-slip persists.
     #[must_use]
-    pub const fn persists(self) -> bool {
+    pub(crate) const fn persists(self) -> bool {
         matches!(self, Self::Periodic | Self::Irregular)
     }
 

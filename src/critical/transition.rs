@@ -31,7 +31,7 @@ pub enum Transition {
 
 impl Transition {
     /// All transitions, in the order of their numbers in a map.
-    pub const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Grazing,
         Self::Fold,
         Self::PeriodDoubling,

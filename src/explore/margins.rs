@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::stability::Stability;
 use crate::answers::margins::Around;
-use crate::linear::margins::{Limits, Margins as Search, Radius};
+use crate::linear::margins::{Limits, MarginSearch, Radius};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::{Parameter, Setting};
@@ -150,7 +150,7 @@ impl Margins {
             margins.fill(&around, setting);
         } else if around.is_beyond() {
             // That counts from no latency at all, whatever holds at the setting's own.
-            let latency = around.latency(&mut Search::default());
+            let latency = around.latency(&mut MarginSearch::default());
             margins.note("latency_margin", &[latency]);
             margins.latency_margin = latency;
         }
@@ -210,7 +210,7 @@ impl Margins {
     }
 
     fn fill(&mut self, around: &Around, setting: &Setting) {
-        let mut search = Search::default();
+        let mut search = MarginSearch::default();
         let gain = around.gain(&mut search);
         self.note("gain_margin", &[gain.lower, gain.upper]);
         self.gain_margin = Some(Range {

@@ -83,7 +83,7 @@ impl CriticalVelocity {
 /// The limit of a short delay: its parameters, and the fields of its maps by their names.
 #[derive(Debug, Clone, Serialize)]
 pub struct ShortDelay {
-    /// [`LIMIT`].
+    /// `LIMIT`.
     pub protocol: &'static str,
     /// γ.
     pub gamma: f64,

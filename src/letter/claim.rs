@@ -10,7 +10,7 @@ const REFINED: f64 = 0.1;
 /// What a run says of a claim. The later, the worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// It holds as it stands.
     Confirmed,
     /// It holds with another number, or within limits that it does not name.
@@ -22,7 +22,7 @@ pub enum Verdict {
 impl Verdict {
     /// The verdict on a statement that holds or does not.
     #[must_use]
-    pub fn of(holds: bool) -> Self {
+    pub(crate) fn of(holds: bool) -> Self {
         match holds {
             true => Self::Confirmed,
             false => Self::Contradicted,
@@ -31,7 +31,7 @@ impl Verdict {
 
     /// The verdict on a statement with several parts: `all` of them hold, or at least `most`.
     #[must_use]
-    pub fn of_parts(all: bool, most: bool) -> Self {
+    pub(crate) fn of_parts(all: bool, most: bool) -> Self {
         match (all, most) {
             (true, _) => Self::Confirmed,
             (false, true) => Self::Refined,
@@ -42,7 +42,7 @@ impl Verdict {
     /// The verdict on a number that the letter rounds to a multiple of `unit`, compared with the
     /// number found.
     #[must_use]
-    pub fn of_number(letter: f64, unit: f64, found: f64, error: f64) -> Self {
+    pub(crate) fn of_number(letter: f64, unit: f64, found: f64, error: f64) -> Self {
         let off = (found - letter).abs();
         Self::of_parts(
             off <= 0.5 * unit + error,
@@ -52,7 +52,7 @@ impl Verdict {
 
     /// Its name.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Confirmed => "confirmed",
             Self::Refined => "refined",
@@ -63,7 +63,8 @@ impl Verdict {
 
 /// A number that a claim is judged by.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Value {
+#[schema(as = Value)]
+pub(crate) struct ClaimValue {
     /// Its name within the claim.
     pub name: String,
     /// What it is, and in which unit where it has one.
@@ -80,10 +81,10 @@ pub struct Value {
     pub letter: Option<f64>,
 }
 
-impl Value {
+impl ClaimValue {
     /// A value without an error; infinite numbers and NaN become null.
     #[must_use]
-    pub fn of(name: impl Into<String>, meaning: impl Into<String>, value: f64) -> Self {
+    pub(crate) fn of(name: impl Into<String>, meaning: impl Into<String>, value: f64) -> Self {
         Self {
             name: name.into(),
             meaning: meaning.into(),
@@ -95,7 +96,7 @@ impl Value {
 
     /// The same value with an error.
     #[must_use]
-    pub fn within(self, error: f64) -> Self {
+    pub(crate) fn within(self, error: f64) -> Self {
         Self {
             error: Some(error).filter(|e| e.is_finite()),
             ..self
@@ -104,7 +105,7 @@ impl Value {
 
     /// The same value with the letter's number.
     #[must_use]
-    pub fn beside(self, letter: f64) -> Self {
+    pub(crate) fn beside(self, letter: f64) -> Self {
         Self {
             letter: Some(letter),
             ..self
@@ -113,7 +114,7 @@ impl Value {
 
     /// The number for display: as many digits as its error allows, at most eight.
     #[must_use]
-    pub fn shown(&self) -> String {
+    pub(crate) fn shown(&self) -> String {
         let Some(value) = self.value else {
             return "none".into();
         };
@@ -149,7 +150,7 @@ fn significant(value: f64, digits: usize) -> String {
 
 /// A claim with its verdict and all that it rests on.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Claim {
+pub(crate) struct Claim {
     /// Its name here.
     pub name: &'static str,
     /// Where it stands: figure, equation or paragraph.
@@ -161,7 +162,7 @@ pub struct Claim {
     /// Why, in words and in numbers of this run.
     pub because: String,
     /// What it is judged by; the first one says most.
-    pub values: Vec<Value>,
+    pub values: Vec<ClaimValue>,
     /// How they are computed.
     pub how: &'static str,
     /// Commands that repeat it.
@@ -194,7 +195,7 @@ impl Claim {
     }
 
     /// Adds numbers.
-    pub(super) fn by(mut self, values: impl IntoIterator<Item = Value>) -> Self {
+    pub(super) fn by(mut self, values: impl IntoIterator<Item = ClaimValue>) -> Self {
         self.values.extend(values);
         self
     }
@@ -234,13 +235,13 @@ mod tests {
 
     #[test]
     fn numbers_have_the_digits_that_their_errors_leave() {
-        let shown = |value: f64, error: f64| Value::of("", "", value).within(error).shown();
+        let shown = |value: f64, error: f64| ClaimValue::of("", "", value).within(error).shown();
         assert_eq!(shown(-0.725_635_939_603, 1e-12), "-0.7256359396030 ± 1e-12");
         assert_eq!(shown(0.344_467, 3e-5), "0.344467 ± 3e-5");
         assert_eq!(shown(97.029, 0.2), "97.03 ± 0.2");
-        assert_eq!(Value::of("", "", 12.0).shown(), "12");
+        assert_eq!(ClaimValue::of("", "", 12.0).shown(), "12");
         assert_eq!(shown(0.0, 0.0), "0");
-        assert_eq!(Value::of("", "", f64::INFINITY).shown(), "none");
-        assert_eq!(Value::of("", "", 1e-9).shown(), "1.0000000e-9");
+        assert_eq!(ClaimValue::of("", "", f64::INFINITY).shown(), "none");
+        assert_eq!(ClaimValue::of("", "", 1e-9).shown(), "1.0000000e-9");
     }
 }

@@ -4,7 +4,7 @@
 //! Longer than most files: four claims, each with its evidence, its text and its verdict.
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::one_variable::minimum;
 use super::workshop::{Source, Workshop, planes, source};
 use crate::linear::Crossings;
@@ -108,9 +108,9 @@ impl VelocityLimit {
             one shows the lobes beyond −0.68.";
         let cells = self.cells.iter().map(|(b, cells)| {
             let meaning = "stable cells of the map at this slope";
-            Value::of(format!("stable cells at {b}"), meaning, *cells as f64)
+            ClaimValue::of(format!("stable cells at {b}"), meaning, *cells as f64)
         });
-        let end = Value::of("b_star", "slope of the end, √(κM)/N0", self.end);
+        let end = ClaimValue::of("b_star", "slope of the end, √(κM)/N0", self.end);
         let end = end.within(TANGENCY_ERROR).beside(LETTER.0);
         Claim::new("velocity_limit", at, self.verdict(), because, how)
             .by(std::iter::once(end).chain(cells))
@@ -211,7 +211,7 @@ impl LoadGains {
         );
         let how = "Crossings exist from the gain −(b²/2 + |b|) κ/μ_K on, b being the slope; all \
             stable delays on either side of it follow from their closed form.";
-        let count = Value::of("slopes", "slopes with a stable delay", stable as f64);
+        let count = ClaimValue::of("slopes", "slopes with a stable delay", stable as f64);
         let always = Claim::new("load_always", at, self.always(), because, how)
             .by([count])
             .from(&["fig2b"]);
@@ -245,12 +245,12 @@ impl LoadGains {
             };
             let meaning = "smallest |α_N| of either sign that stabilises, κ/μ_K";
             let weakest = negative.abs().min(positive);
-            Value::of(format!("gain at {b}"), meaning, weakest).within(f64::EPSILON * weakest)
+            ClaimValue::of(format!("gain at {b}"), meaning, weakest).within(f64::EPSILON * weakest)
         };
         let end = "slope at which the last positive gain stabilises, √(κM)/N0";
-        let end = Value::of("positive_until", end, until).within(TANGENCY_ERROR);
+        let end = ClaimValue::of("positive_until", end, until).within(TANGENCY_ERROR);
         let seen = "steepest of the slopes looked at with such a gain";
-        let seen = Value::of("seen_until", seen, self.positive_until());
+        let seen = ClaimValue::of("seen_until", seen, self.positive_until());
         let grows = Claim::new("minimal_load_gain", at, self.grows(), because, how)
             .by([-0.1, -1.0, -5.0].map(of))
             .by([end, seen])
@@ -386,10 +386,10 @@ impl ShortDelays {
             stability.";
         let shortest = self.velocity.iter().map(|(b, tau)| {
             let meaning = "shortest stable delay at any gain, √(M/κ); none: no gain stabilises";
-            Value::of(format!("shortest at {b}"), meaning, *tau).within(SHORTEST_ERROR * tau)
+            ClaimValue::of(format!("shortest at {b}"), meaning, *tau).within(SHORTEST_ERROR * tau)
         });
         let least = "shortest stable delay at any gain and slope, |μ′_K|N0/κ";
-        let least = Value::of("shortest", least, self.least());
+        let least = ClaimValue::of("shortest", least, self.least());
         let least = least.within(SHORTEST_ERROR * self.least());
         let velocity = Claim::new("short_velocity", at, self.velocity_verdict(), because, how)
             .by(std::iter::once(least).chain(shortest))
@@ -411,7 +411,7 @@ impl ShortDelays {
             that of Eq. (8), for nine slopes at each delay.";
         let off = SHORT.map(|tau| {
             let meaning = "largest relative difference from Eq. (8)";
-            let off = Value::of(format!("off at {tau}"), meaning, self.off(tau));
+            let off = ClaimValue::of(format!("off at {tau}"), meaning, self.off(tau));
             off.within(1e-14 / tau)
         });
         let load = Claim::new("short_load", at, self.load_verdict(), because, how)

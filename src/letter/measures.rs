@@ -3,7 +3,7 @@
 use super::one_variable::{Integral, integral, minimum};
 use crate::linear::Crossings;
 use crate::linear::lobes::LobeControl;
-use crate::linear::margins::{self, Margins, Setting};
+use crate::linear::margins::{self, MarginSearch, Setting};
 use crate::model::Groups;
 use crate::model::known_cases::letter_fig3;
 
@@ -122,7 +122,7 @@ const MARGIN_ERROR: f64 = 1e-9;
 
 /// Margins at the settings of Fig. 3.
 fn margins_at_fig3() -> [Measure; 4] {
-    let mut searches = Margins::default();
+    let mut searches = MarginSearch::default();
     let of = letter_fig3().map(|case| {
         let setting = Setting {
             groups: case.groups,
@@ -180,7 +180,7 @@ const PLACES: u32 = 48;
 /// The largest phase margin and the largest latency margin on a grid over the box of gains and
 /// delays, at a slope.
 fn largest_margins(b: f64) -> [Measure; 2] {
-    let mut searches = Margins::default();
+    let mut searches = MarginSearch::default();
     let mut largest = |groups: fn(f64, f64) -> Groups| {
         let (mut phase, mut latency) = (0.0_f64, 0.0_f64);
         for (i, j) in (0..PLACES).flat_map(|i| (0..PLACES).map(move |j| (i, j))) {

@@ -46,13 +46,13 @@ use crate::report::picture::PictureError;
 use crate::store::StoreError;
 use crate::sweep::RunError;
 use crate::text::SpecError;
-pub use claim::{Claim, Value, Verdict};
-pub use page::GENERATOR;
-pub use workshop::{Figure, Workshop};
+pub(crate) use claim::{Claim, Verdict};
+pub(crate) use page::GENERATOR;
+pub(crate) use workshop::{Figure, Workshop};
 
 /// The letter with what this program finds.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Reproduction {
+pub(crate) struct Reproduction {
     /// Every claim, linear stability first.
     pub claims: Vec<Claim>,
     /// The maps and traces behind them.
@@ -61,7 +61,7 @@ pub struct Reproduction {
 
 /// Why the letter could not be reproduced.
 #[derive(Debug, thiserror::Error)]
-pub enum LetterError {
+pub(crate) enum LetterError {
     /// It was stopped.
     #[error("interrupted")]
     Stopped,
@@ -137,7 +137,7 @@ impl From<TraceError> for LetterError {
 /// # Errors
 /// When the run is stopped, the folder cannot be written to or holds other files of the same names,
 /// or a map cannot be computed.
-pub fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterError> {
+pub(crate) fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterError> {
     let shop = &mut workshop;
     shop.look(&stability::SOURCES)?;
     shop.look(&limits::SOURCES)?;
@@ -164,7 +164,7 @@ pub fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterError> {
 impl Reproduction {
     /// Number of claims with a verdict.
     #[must_use]
-    pub fn with(&self, verdict: Verdict) -> usize {
+    pub(crate) fn with(&self, verdict: Verdict) -> usize {
         let same = self.claims.iter().filter(|claim| claim.verdict == verdict);
         same.count()
     }

@@ -1,7 +1,7 @@
 //! Motions: the letter's Fig. 3, the fate of stick-slip elsewhere, and basins of attraction.
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::workshop::{Source, Workshop, column, source};
 use crate::answers::Trace;
 use crate::linear::rightmost::Rightmost;
@@ -104,18 +104,18 @@ impl Motion {
         let how = "The motion of Eqs. (1) and (2), event by event, by Taylor's method with an \
             error of 1e-12 in a step, until the linear count and the decay of what is left decide.";
         let values = [
-            Value::of(
+            ClaimValue::of(
                 "last_release",
                 "when the last stick ends, √(M/κ)",
                 self.last_release,
             )
             .within(1e-8),
-            Value::of(
+            ClaimValue::of(
                 "sticks",
                 "sticks before the control acts",
                 self.sticks_before as f64,
             ),
-            Value::of("n_min", "smallest load since then, N0", self.n_min).within(1e-8),
+            ClaimValue::of("n_min", "smallest load since then, N0", self.n_min).within(1e-8),
         ];
         Claim::new(name, (place, quotation), self.turns(), because, how)
             .by(values)
@@ -143,7 +143,7 @@ fn stability(panels: &[Motion; 2]) -> Claim {
     let values = [("Fig. 3(a)", a), ("Fig. 3(b)", b)].map(|(name, panel)| {
         let meaning = "largest real part of a characteristic root, √(κ/M)";
         let error = panel.margin * panel.abscissa.abs().max(1.0);
-        Value::of(format!("abscissa at {name}"), meaning, panel.abscissa).within(error)
+        ClaimValue::of(format!("abscissa at {name}"), meaning, panel.abscissa).within(error)
     });
     Claim::new("fig3_stable", at, stable_there(panels), because, how)
         .by(values)
@@ -272,7 +272,7 @@ impl NotDestroyed {
             ),
         ];
         Claim::new("velocity_at_fig3b", at, self.verdict(), because, how)
-            .by(values.map(|(name, meaning, n)| Value::of(name, meaning, n as f64)))
+            .by(values.map(|(name, meaning, n)| ClaimValue::of(name, meaning, n as f64)))
             .from(&["velocity_at_fig3b", "velocity_at_fig3b_lobe"])
     }
 }
@@ -324,7 +324,7 @@ impl Basins {
             };
             let meaning = "share of the window from which control ends in sliding; error: of a \
                 basin whose edge is as long as one of the window, or of a single cell";
-            Value::of(name, meaning, share).within(error)
+            ClaimValue::of(name, meaning, share).within(error)
         };
         Claim::new("basins", at, self.verdict(), because, how)
             .by([value("basin at Fig. 3(a)", &self.velocity)])

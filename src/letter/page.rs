@@ -6,14 +6,14 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::{Claim, Figure, Reproduction, Verdict};
 
 /// The generator named in the head of the page.
-pub const GENERATOR: &str = "slipmap reproduce";
+pub(crate) const GENERATOR: &str = "slipmap reproduce";
 
 const STYLE: &str = include_str!("page.css");
 
 impl Reproduction {
     /// The page. `made`: the program and time, in one line; `quick`: whether maps are coarser.
     #[must_use]
-    pub fn page(&self, made: &str, quick: bool) -> String {
+    pub(crate) fn page(&self, made: &str, quick: bool) -> String {
         let verdicts = [Verdict::Confirmed, Verdict::Refined, Verdict::Contradicted];
         let page = html! {
             (DOCTYPE)
@@ -168,12 +168,13 @@ fn badge(verdict: Verdict) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::letter::{Value, Verdict};
+    use crate::letter::Verdict;
+    use crate::letter::claim::ClaimValue;
 
     fn found() -> Reproduction {
         let at = ("Fig. 0", "a < b & so on");
         let claim = Claim::new("name", at, Verdict::Refined, "because".into(), "how")
-            .by([Value::of("b_star", "a slope", -0.72).beside(-0.68)])
+            .by([ClaimValue::of("b_star", "a slope", -0.72).beside(-0.68)])
             .from(&["map"]);
         let figure = Figure {
             name: "map",

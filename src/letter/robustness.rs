@@ -2,7 +2,7 @@
 //! controls.
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::measures::{Measure, linear_measures};
 use super::workshop::{Source, Workshop, column, source};
 use crate::critical::{Problem, critical_velocity};
@@ -81,7 +81,7 @@ impl AtFig3 {
         let values = ["Fig. 3(a)", "Fig. 3(b)"].into_iter().zip(self.vc);
         let values = values.map(|(name, vc)| {
             let meaning = "critical velocity, √(N0²/(κM))";
-            Value::of(format!("v_c at {name}"), meaning, vc).within(VC_ERROR * vc)
+            ClaimValue::of(format!("v_c at {name}"), meaning, vc).within(VC_ERROR * vc)
         });
         Claim::new("critical_velocity", at, self.verdict(), because, how)
             .by(values)
@@ -136,13 +136,13 @@ impl RuleOfThumb {
         let meaning = "stick time over slip time without control";
         Claim::new("rule_of_thumb", at, self.verdict(), because, how)
             .by([
-                Value::of("at the lowest smooth velocity", meaning, self.velocity)
+                ClaimValue::of("at the lowest smooth velocity", meaning, self.velocity)
                     .within(10.0 * VC_ERROR * self.velocity),
-                Value::of("at Fig. 3(a)", meaning, self.fig3[0]).within(1e-9),
-                Value::of("at Fig. 3(b), load control", meaning, self.fig3[1]).within(1e-9),
-                Value::of("at v_c of Fig. 3(b)", meaning, self.load)
+                ClaimValue::of("at Fig. 3(a)", meaning, self.fig3[0]).within(1e-9),
+                ClaimValue::of("at Fig. 3(b), load control", meaning, self.fig3[1]).within(1e-9),
+                ClaimValue::of("at v_c of Fig. 3(b)", meaning, self.load)
                     .within(10.0 * VC_ERROR * self.load),
-                Value::of(
+                ClaimValue::of(
                     "lowest",
                     "lowest smooth velocity of the map, √(N0²/(κM))",
                     self.lowest,
@@ -191,7 +191,7 @@ impl LessRobust {
             velocity; margins of the settings of Fig. 3, and the largest ones of gains and delays \
             at a slope.";
         let ahead = "measures by which load control is more robust";
-        let ahead = Value::of("measures", ahead, self.ahead() as f64);
+        let ahead = ClaimValue::of("measures", ahead, self.ahead() as f64);
         let values = self.measures.iter().flat_map(|m| {
             let better = match m.more {
                 true => "more is more robust",
@@ -199,7 +199,7 @@ impl LessRobust {
             };
             [("velocity", m.velocity), ("load", m.load)].map(|(control, value)| {
                 let meaning = format!("{}, {control} control; {better}", m.meaning);
-                let told = Value::of(format!("{}: {control}", m.name), meaning, value);
+                let told = ClaimValue::of(format!("{}: {control}", m.name), meaning, value);
                 match m.error {
                     Some(error) => told.within(error * value.abs()),
                     None => told,

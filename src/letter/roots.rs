@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::workshop::Workshop;
 use crate::answers::best::{best_settings, default_ranges};
 use crate::linear::best::SearchedGain;
@@ -137,12 +137,12 @@ impl UnstableRoots {
         let how = "Settings spread evenly over b, a_v, a_n and τ. The count is that of the closed \
             form; the argument principle and the search for roots share nothing with it.";
         let quotation = "the number of solutions with positive real part is finite";
-        let agree = Value::of(
+        let agree = ClaimValue::of(
             "agree",
             "settings at which all three agree",
             f64::from(self.agree),
         );
-        let most = Value::of("most", "the most unstable roots", self.most as f64);
+        let most = ClaimValue::of("most", "the most unstable roots", self.most as f64);
         let finite = Claim::new("finite", (at, quotation), self.finite(), because, how)
             .by([agree, most])
             .repeat_some(command(self.most_at, self.most));
@@ -156,7 +156,7 @@ impl UnstableRoots {
         let quotation = "one can give upper limits of the real part and the imaginary part";
         let nearest = "largest |λ| of an unstable root over its bound";
         let bounds = Claim::new("root_bounds", (at, quotation), self.bounded(), because, how)
-            .by([Value::of("nearest", nearest, self.nearest).within(1e-9)])
+            .by([ClaimValue::of("nearest", nearest, self.nearest).within(1e-9)])
             .repeat_some(command(self.nearest_at, 8));
         let because = format!(
             "At {} crossings by Eqs. (4) and (5), D(iω) is 0 up to {:.1e} of its terms.",
@@ -170,7 +170,7 @@ impl UnstableRoots {
         );
         let residual = "largest |D(iω)| over the size of its terms";
         let crossings = Claim::new("crossings", at, self.on_the_axis(), because, how)
-            .by([Value::of("residual", residual, self.residual)])
+            .by([ClaimValue::of("residual", residual, self.residual)])
             .repeat_some(command(self.residual_at, 8));
         [finite, bounds, crossings]
     }
@@ -208,7 +208,7 @@ impl Uncontrolled {
             "It is unstable for velocity-weakening friction laws",
         );
         let how = "The exact count at four slopes of either sign.";
-        let count = Value::of("weakening", "unstable roots, μ′ < 0", self.weakening as f64);
+        let count = ClaimValue::of("weakening", "unstable roots, μ′ < 0", self.weakening as f64);
         Claim::new("uncontrolled", at, self.verdict(), because, how)
             .by([count])
             .repeat("slipmap point --mu-prime -0.1")
@@ -302,12 +302,12 @@ impl Relaxation {
             line.best.iter().enumerate().map(|(i, (tau, time))| {
                 let name = format!("{} {}: region {}", line.what, line.mu_prime, i + 1);
                 let meaning = format!("shortest relaxation time, √(M/κ), at τ = {tau:.6}");
-                Value::of(name, meaning, *time).within(1e-8 * time)
+                ClaimValue::of(name, meaning, *time).within(1e-8 * time)
             })
         });
         let factor = "least factor from one region to the next";
         Claim::new("larger_delays", at, self.verdict(), because, how)
-            .by([Value::of("factor", factor, least).within(2e-8 * least)])
+            .by([ClaimValue::of("factor", factor, least).within(2e-8 * least)])
             .by(values)
             .repeat("slipmap best --mu-prime -0.1 --control velocity")
             .repeat("slipmap best --mu-prime -0.1 --control load")

@@ -1,7 +1,7 @@
 //! Coulomb friction under load control in the limit of a vanishing delay: the letter's Fig. 4.
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::workshop::{Source, Workshop, column, source};
 use crate::critical::limit::{CoulombLimit, LimitCell};
 use crate::critical::{Problem, critical_velocity};
@@ -95,11 +95,11 @@ impl Limit {
         let off = "largest difference of both as τ → 0, ṽ";
         let values = self.rows.iter().map(|(gamma, _, exact)| {
             let meaning = "critical velocity, ṽ";
-            Value::of(format!("v_c at γ = {gamma}"), meaning, *exact).within(1e-12 * exact)
+            ClaimValue::of(format!("v_c at γ = {gamma}"), meaning, *exact).within(1e-12 * exact)
         });
-        let cells = Value::of("cells", "cells of the map with v_c", map.vc.len() as f64);
+        let cells = ClaimValue::of("cells", "cells of the map with v_c", map.vc.len() as f64);
         Claim::new("fig4", at, self.verdict(), because, how)
-            .by([Value::of("off", off, self.off())])
+            .by([ClaimValue::of("off", off, self.off())])
             .by(values)
             .by([cells])
             .from(&["fig4"])
@@ -173,7 +173,7 @@ impl Approximation {
         );
         let how = "The approximation over the closed form, less 1, ever nearer to the end of γ.";
         let errors = self.errors.iter().rev().map(|(gamma, error)| {
-            Value::of(
+            ClaimValue::of(
                 format!("error at γ = {gamma}"),
                 "relative error of v_c",
                 *error,
@@ -244,8 +244,8 @@ impl LiftOff {
             of γ and μ_K/μ_S.";
         let least = "smallest lift-off velocity over v_c";
         Claim::new("lift_off", at, self.verdict(), because, how)
-            .by([Value::of("on the curves", least, self.on_curve).within(1e-11)])
-            .by([Value::of("anywhere", least, self.anywhere).within(1e-11)])
+            .by([ClaimValue::of("on the curves", least, self.on_curve).within(1e-11)])
+            .by([ClaimValue::of("anywhere", least, self.anywhere).within(1e-11)])
             .from(&["fig4"])
     }
 }
@@ -311,7 +311,7 @@ impl Overdamped {
             self.unstable
         );
         let how = "The exact count for Coulomb friction at τ = 0.001 √(M/κ).";
-        let unstable = Value::of("unstable", "the most unstable roots", self.unstable as f64);
+        let unstable = ClaimValue::of("unstable", "the most unstable roots", self.unstable as f64);
         let stable = Claim::new("coulomb_stable", at, self.stable(), because, how)
             .by([unstable])
             .repeat("slipmap point --mu-prime 0 --mu-k 0.5 --alpha-n=-100 --tau 0.001");
@@ -327,9 +327,9 @@ impl Overdamped {
         );
         let how = "The closed form from γ = 1 on, and searches for stick-slip at falling v0 with \
             the full Eqs. (1) and (2).";
-        let vc = Value::of("vc", "largest v_c from γ = 1 on, √(N0²/(κM))", largest);
+        let vc = ClaimValue::of("vc", "largest v_c from γ = 1 on, √(N0²/(κM))", largest);
         let vc = vc.within(0.0).beside(0.0);
-        let before = Value::of("before", "v_c/ṽ at γ = 0.999", self.before);
+        let before = ClaimValue::of("before", "v_c/ṽ at γ = 0.999", self.before);
         let vanishes = Claim::new("overdamped", at, self.vanishes(), because, how)
             .by([vc, before.within(1e-9 * self.before)])
             .from(&["fig4"])
@@ -346,7 +346,7 @@ impl Overdamped {
         );
         let how = "v_c of Coulomb friction under load control at finite delays, γ = 1, 1.5 and 3: \
             the largest v0 at which stick-slip is sustained, 0 where it never is.";
-        let none = Value::of("settings", "settings with v_c = 0", none as f64);
+        let none = ClaimValue::of("settings", "settings with v_c = 0", none as f64);
         let small = Claim::new(
             "arbitrarily_small",
             at,

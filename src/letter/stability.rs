@@ -1,7 +1,7 @@
 //! Where sliding is stable: the letter's Fig. 2, and the areas in it.
 
 use super::LetterError;
-use super::claim::{Claim, Value, Verdict};
+use super::claim::{Claim, ClaimValue, Verdict};
 use super::one_variable::{Integral, integral};
 use super::workshop::{Source, Workshop, planes, source};
 use crate::linear::Crossings;
@@ -95,12 +95,12 @@ impl Panel {
         )
     }
 
-    fn values(&self) -> impl Iterator<Item = Value> {
+    fn values(&self) -> impl Iterator<Item = ClaimValue> {
         self.regions.iter().map(|region| {
             let name = format!("area at {}", region.mu_prime);
             let meaning = "stable area of the window of the map, by the closed form of all stable \
                 delays at a gain, integrated over the gain";
-            Value::of(name, meaning, region.area.value).within(region.area.error)
+            ClaimValue::of(name, meaning, region.area.value).within(region.area.error)
         })
     }
 
@@ -178,7 +178,7 @@ impl Areas {
             let meaning = "stable area of velocity control over that of load control";
             let ratio = velocity.value / load.value;
             let error = velocity.error / velocity.value + load.error / load.value;
-            Value::of(name, meaning, ratio).within(ratio * error)
+            ClaimValue::of(name, meaning, ratio).within(ratio * error)
         });
         Claim::new("smaller_area", at, self.verdict(), because, how)
             .by(values)

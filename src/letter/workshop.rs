@@ -72,7 +72,7 @@ pub(super) use source;
 
 /// A map or a trace behind claims.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Figure {
+pub(crate) struct Figure {
     /// Its name.
     pub name: &'static str,
     /// What it shows.
@@ -92,7 +92,7 @@ pub struct Figure {
 }
 
 /// The settings and results of a reproduction of the letter.
-pub struct Workshop<'a> {
+pub(crate) struct Workshop<'a> {
     /// The folder in which maps, traces, sweeps and pictures are made.
     pub folder: &'a Path,
     /// Whether the folder is kept.
@@ -114,7 +114,7 @@ pub struct Workshop<'a> {
 impl<'a> Workshop<'a> {
     /// A workshop in a folder, with nothing made yet.
     #[must_use]
-    pub fn new(
+    pub(crate) fn new(
         (folder, kept): (&'a Path, bool),
         quick: bool,
         threads: usize,

@@ -56,7 +56,7 @@ impl Jet {
     /// Divided by |D′| it bounds what Newton's method can reach at a simple root.
     #[inline]
     #[must_use]
-    pub fn rounding(&self, groups: Groups, tau: f64, lambda: Complex64) -> f64 {
+    pub(crate) fn rounding(&self, groups: Groups, tau: f64, lambda: Complex64) -> f64 {
         let Groups { b, a_v, a_n } = groups;
         // Sums of absolute parts bound absolute values without square roots.
         let size = lambda.l1_norm();
@@ -98,7 +98,7 @@ pub fn characteristic(groups: Groups, tau: f64, lambda: Complex64) -> Complex64 
 /// For such a root |1 − e^(−λτ)| ≤ 2, so |λ|² ≤ (|b| + 2|a_v|)|λ| + 1 + 2|b a_v + a_n|. This is the
 /// explicit form of the upper limits that the letter mentions below its Eq. (3).
 #[must_use]
-pub fn unstable_root_bound(groups: Groups) -> f64 {
+pub(crate) fn unstable_root_bound(groups: Groups) -> f64 {
     root_bound(groups, 0.0, 0.0)
 }
 
@@ -107,7 +107,7 @@ pub fn unstable_root_bound(groups: Groups) -> f64 {
 /// There |1 − e^(−λτ)| ≤ 1 + e^(−στ) with σ = `line`, so |λ|² ≤ (|b| + (1 + e^(−στ))|a_v|)|λ| + 1 +
 /// (1 + e^(−στ))|b a_v + a_n|.
 #[must_use]
-pub fn root_bound(groups: Groups, tau: f64, line: f64) -> f64 {
+pub(crate) fn root_bound(groups: Groups, tau: f64, line: f64) -> f64 {
     let Groups { b, a_v, a_n } = groups;
     let largest = 1.0 + exp(-line * tau);
     let linear = b.abs() + largest * a_v.abs();

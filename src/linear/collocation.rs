@@ -24,7 +24,7 @@ use crate::model::Channel;
 use crate::model::elementary::{cbrt, cos};
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
-pub const MOST_NODES: usize = 384;
+pub(crate) const MOST_NODES: usize = 384;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
@@ -34,7 +34,7 @@ pub const MOST_NODES: usize = 384;
 ///
 /// None where that takes more than `MOST_NODES`.
 #[must_use]
-pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
+pub(crate) fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     let half_angle = 0.5 * tau * radius;
     let nodes = 1.15 * half_angle + 3.0 * cbrt(half_angle) + 6.0;
     (nodes <= MOST_NODES as f64).then_some(nodes as usize)
@@ -47,13 +47,13 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 /// has no higher degree. Newton's method has to polish the roots. `tau` > 0 in units of √(M/κ).
 /// None if the eigenvalue iteration fails.
 #[must_use]
-pub fn eigenvalues(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
+pub(crate) fn eigenvalues(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
     eigenvalues_of(&generator(p, q, tau, nodes))
 }
 
 /// Feedback that comes late, B(1 − R E) = A e^(−λδ)(1 − E), by the coefficients of B and A.
 #[derive(Debug, Clone, Copy)]
-pub struct Late<'c> {
+pub(crate) struct Late<'c> {
     /// B; its last coefficient is not 0.
     pub open: &'c [f64],
     /// A, of lower degree.
@@ -69,7 +69,7 @@ pub struct Late<'c> {
 /// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ), and s = A z +
 /// R s(t − τ). Its history over τ + δ is collocated, with barycentric values inside.
 #[must_use]
-pub fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
+pub(crate) fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
     eigenvalues_of(&late_generator(of, nodes))
 }
 

@@ -323,7 +323,7 @@ fn quadratic(groups: Groups) -> (f64, f64) {
 /// The discriminant c² − 4d of (1): two crossing frequencies may exist only where it is positive.
 #[inline]
 #[must_use]
-pub fn discriminant(groups: Groups) -> f64 {
+pub(crate) fn discriminant(groups: Groups) -> f64 {
     let (c, d) = quadratic(groups);
     c.mul_add(c, -4.0 * d)
 }
@@ -332,7 +332,7 @@ pub fn discriminant(groups: Groups) -> f64 {
 /// infinity.
 #[inline]
 #[must_use]
-pub fn frequency_product(groups: Groups) -> f64 {
+pub(crate) fn frequency_product(groups: Groups) -> f64 {
     let Groups { b, a_v, a_n } = groups;
     let sum = 1.0 - 2.0 * a_n;
     // The rounding error of the sum (Knuth's two-sum), which matters where the rest cancels.

@@ -47,9 +47,9 @@ pub enum CurveKind {
 
 impl CurveKind {
     /// The kinds of curves.
-    pub const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
+    pub(crate) const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
 
-    /// Its place in [`CurveKind::ALL`].
+    /// Its place in `CurveKind::ALL`.
     #[must_use]
     pub const fn number(self) -> i8 {
         self as i8
@@ -74,7 +74,7 @@ pub enum StableSide {
 impl StableSide {
     /// −1 at shorter delays, 0 on neither side, 1 at longer ones; ∓2 at smaller and larger p.
     #[must_use]
-    pub const fn sign(self) -> i8 {
+    pub(crate) const fn sign(self) -> i8 {
         match self {
             Self::Below => -2,
             Self::Shorter => -1,
@@ -86,7 +86,7 @@ impl StableSide {
 
     /// The side with this [`StableSide::sign`]; `Neither` for other numbers.
     #[must_use]
-    pub const fn of_sign(sign: i8) -> Self {
+    pub(crate) const fn of_sign(sign: i8) -> Self {
         match sign {
             -2 => Self::Below,
             -1 => Self::Shorter,
@@ -177,7 +177,7 @@ impl Window {
 ///
 /// Found on a grid of `samples` steps; two changes within one step are missed.
 #[must_use]
-pub fn scan_breakpoints(
+pub(crate) fn scan_breakpoints(
     groups_at: impl Fn(f64) -> Groups,
     p: &RangeInclusive<f64>,
     samples: usize,

@@ -75,7 +75,7 @@ impl LagPolynomials {
 
 /// Derivatives of D with respect to the dimensionless groups.
 #[derive(Debug, Clone, Copy)]
-pub struct PerGroup {
+pub(crate) struct PerGroup {
     /// ∂D/∂b; 0 for friction with a state.
     pub b: Complex64,
     /// ∂D/∂a_v.
@@ -86,7 +86,7 @@ pub struct PerGroup {
 
 impl PerGroup {
     /// Derivatives that are not known: NaN.
-    pub const UNKNOWN: Self = {
+    pub(crate) const UNKNOWN: Self = {
         let unknown = Complex64::new(f64::NAN, f64::NAN);
         Self {
             b: unknown,
@@ -112,7 +112,7 @@ pub(super) fn times(one: &Polynomial, other: &Polynomial) -> Polynomial {
 impl Friction {
     /// Friction with a state, (4).
     #[must_use]
-    pub fn of_state(groups: StateGroups) -> Self {
+    pub(crate) fn of_state(groups: StateGroups) -> Self {
         let StateGroups {
             direct,
             evolution,
@@ -140,7 +140,7 @@ impl Friction {
 
     /// The letter's friction, (3).
     #[must_use]
-    pub fn of_slope(b: f64) -> Self {
+    pub(crate) fn of_slope(b: f64) -> Self {
         Self {
             open: polynomial(&open_loop_coefficients(b)),
             load: polynomial(&[1.0]),
@@ -170,14 +170,14 @@ impl FeedbackLoop {
 
     /// The loop of the letter's friction.
     #[must_use]
-    pub fn of_letter(groups: Groups, channel: Channel, lags: Lags) -> Self {
+    pub(crate) fn of_letter(groups: Groups, channel: Channel, lags: Lags) -> Self {
         let Groups { b, a_v, a_n } = groups;
         Self::new(Friction::of_slope(b), a_v, a_n, channel, lags)
     }
 
     /// B and A.
     #[must_use]
-    pub fn polynomials(&self) -> [Polynomial; 2] {
+    pub(crate) fn polynomials(&self) -> [Polynomial; 2] {
         let load = Polynomial::ZERO.plus(&self.load, self.a_n);
         [self.open, load.plus(&self.velocity, self.a_v)]
     }
@@ -198,7 +198,7 @@ impl FeedbackLoop {
 
     /// Derivatives of D at λ; `difference` is 1 − E.
     #[must_use]
-    pub fn per_group(&self, lambda: Complex64, difference: Complex64) -> PerGroup {
+    pub(crate) fn per_group(&self, lambda: Complex64, difference: Complex64) -> PerGroup {
         let at = |polynomial: &Polynomial| polynomial.value(lambda);
         let Channel { memory, latency } = self.channel;
         let remembered = 1.0 - memory * (1.0 - difference);

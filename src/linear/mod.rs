@@ -4,16 +4,16 @@
 //! units of √(M/κ).
 //!
 //! - [`characteristic`]: D(λ) of the letter's Eq. (3) and a bound on its unstable roots
-//! - [`crossing`]: frequencies and delays at which roots cross the imaginary axis (the letter's
+//! - `crossing`: frequencies and delays at which roots cross the imaginary axis (the letter's
 //!   Eqs. 4 and 5)
-//! - [`count`]: the exact number of unstable roots at a delay
+//! - `count`: the exact number of unstable roots at a delay
 //! - [`stable_delays`]: all delay intervals on which sliding is stable
 //! - [`row`]: counts and margins at many delays of one line
 //! - [`status`]: the status bits of a cell
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
-//! - [`plane`]: a characteristic function over a plane, for code that follows curves
+//! - `plane`: a characteristic function over a plane, for code that follows curves
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
@@ -25,7 +25,7 @@
 //! - `controlled`: the controlled oscillator as an `equation`
 //! - `double`: numbers of twice the digits
 //! - `equation`: a characteristic equation, with all that is needed to find and follow its roots
-//! - [`feedback_loop`]: the feedback loop about steady sliding, as a system
+//! - `feedback_loop`: the feedback loop about steady sliding, as a system
 //! - `general`: any linear system with one delay
 //! - `line`: linear models, and what is told of each whatever its kind
 //! - `newton`: polishing of a root (Halley's method) and its error
@@ -42,27 +42,27 @@ mod branches;
 pub mod certificate;
 pub mod characteristic;
 mod cluster;
-pub mod collocation;
+pub(crate) mod collocation;
 mod controlled;
-pub mod count;
-pub mod crossing;
+pub(crate) mod count;
+pub(crate) mod crossing;
 pub mod curves;
 pub mod decay;
 mod double;
 pub mod equation;
-pub mod feedback_loop;
+pub(crate) mod feedback_loop;
 pub mod gains;
 pub mod general;
 pub mod line;
 pub mod lobes;
 pub mod margins;
 pub mod newton;
-pub mod plane;
+pub(crate) mod plane;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;
 pub mod row;
-pub mod sensitivity;
+pub(crate) mod sensitivity;
 pub mod spectrum;
 pub mod stable_delays;
 pub mod status;

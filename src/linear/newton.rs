@@ -28,7 +28,7 @@ impl Root {
 
     /// Whether some other root lies so near that rounding hardly tells them apart.
     #[must_use]
-    pub fn nearly_multiple(&self) -> bool {
+    pub(crate) fn nearly_multiple(&self) -> bool {
         self.error > 1e-10 * (1.0 + norm(self.lambda))
     }
 }

@@ -14,7 +14,7 @@ const ROUNDINGS: f64 = 64.0;
 
 /// D at one λ, in the units of the plane.
 #[derive(Debug, Clone, Copy)]
-pub struct Value {
+pub struct CharacteristicValue {
     /// D.
     pub value: Complex64,
     /// ∂D/∂λ.
@@ -51,7 +51,7 @@ impl Local {
 
     /// The rows of Re D and Im D over (p, q, ω).
     #[must_use]
-    pub fn rows(&self) -> [[f64; 3]; 2] {
+    pub(crate) fn rows(&self) -> [[f64; 3]; 2] {
         let by_omega = Complex64::i() * self.by_lambda;
         [
             [self.by_p.re, self.by_q.re, by_omega.re],
@@ -85,7 +85,7 @@ pub trait Plane {
     fn delays(&self) -> [bool; 2];
 
     /// D at λ.
-    fn at(&self, p: f64, q: f64, lambda: Complex64) -> Value;
+    fn at(&self, p: f64, q: f64, lambda: Complex64) -> CharacteristicValue;
 
     /// D and its derivatives at `v`, on the line Re λ = −`sigma`. Beyond the window, where the
     /// model may not be valid, D is continued linearly.

@@ -35,7 +35,7 @@ impl Delays {
     }
 
     /// Becomes the one delay `tau`, in the memory that it has.
-    pub fn set_one(&mut self, tau: f64) {
+    pub(crate) fn set_one(&mut self, tau: f64) {
         self.fenced.clear();
         self.fenced.extend([f64::NEG_INFINITY, tau, f64::INFINITY]);
         self.per_step = 0.0;
@@ -376,7 +376,7 @@ impl Crossings {
 
     /// The signed distance to the nearest change of stability at every delay of a row, see
     /// [`Crossings::delay_margin`].
-    pub fn fill_delay_margins(&self, delays: &Delays, margins: &mut [f64]) {
+    pub(crate) fn fill_delay_margins(&self, delays: &Delays, margins: &mut [f64]) {
         let mut walk = MarginWalk::new(self);
         for (tau, margin) in delays.values().iter().zip(margins) {
             *margin = walk.margin_at(*tau);

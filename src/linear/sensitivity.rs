@@ -9,7 +9,7 @@ use crate::model::Groups;
 /// Derivatives of a root λ with respect to the dimensionless groups and the delay. Their real parts
 /// are the derivatives of the abscissa.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensitivity {
+pub(crate) struct Sensitivity {
     /// ∂λ/∂b.
     pub b: Complex64,
     /// ∂λ/∂a_v.
@@ -29,7 +29,7 @@ impl Sensitivity {
     ///
     /// Infinite or NaN at a double root, where the root is not differentiable.
     #[must_use]
-    pub fn of(groups: Groups, tau: f64, lambda: Complex64) -> Self {
+    pub(crate) fn of(groups: Groups, tau: f64, lambda: Complex64) -> Self {
         let jet = Jet::at(groups, tau, lambda);
         let per = PerGroup {
             b: lambda - groups.a_v * jet.difference,
@@ -42,7 +42,7 @@ impl Sensitivity {
     /// At the root `lambda` of an equation with the jet `jet` there, from the derivatives of D with
     /// respect to the groups.
     #[must_use]
-    pub fn by_derivatives(jet: &Jet, per: PerGroup, lambda: Complex64) -> Self {
+    pub(crate) fn by_derivatives(jet: &Jet, per: PerGroup, lambda: Complex64) -> Self {
         let per_slope = -1.0 / jet.first;
         Self {
             b: per.b * per_slope,

@@ -45,7 +45,7 @@ pub struct Assembled {
 /// # Errors
 /// When it is stopped, a piece is damaged, a piece is missing and `missing` refuses that, or the
 /// system or the library refuses. The map's name then has what it had before.
-pub fn assemble(
+pub(crate) fn assemble(
     plan: &Plan,
     output: Output,
     provenance: &Provenance,

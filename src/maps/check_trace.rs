@@ -16,7 +16,7 @@ const OF_REVISIONS: f64 = 1e-6;
 
 /// The result of checking a trace.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct TraceReport {
+pub(crate) struct TraceReport {
     /// Everything that is wrong, in words; empty for a sound trace.
     pub faults: Vec<String>,
     /// Other remarks.
@@ -33,7 +33,7 @@ pub struct TraceReport {
 
 /// Computes the motion of a trace again and compares it with everything stored in the trace.
 #[must_use]
-pub fn check_trace(file: &TraceFile, program: Program) -> TraceReport {
+pub(crate) fn check_trace(file: &TraceFile, program: Program) -> TraceReport {
     let mut report = TraceReport::default();
     check_parameters(file, &mut report);
     let again = match Trace::of(&file.spec) {

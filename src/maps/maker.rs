@@ -177,7 +177,7 @@ pub fn merge(
 ///
 /// # Errors
 /// When the file there cannot be read as a map: it might still be one.
-pub fn is_complete(path: &Path, plan_hash: Option<&str>) -> Result<bool, StoreError> {
+pub(crate) fn is_complete(path: &Path, plan_hash: Option<&str>) -> Result<bool, StoreError> {
     if !path.exists() {
         return Ok(false);
     }

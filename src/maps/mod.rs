@@ -3,11 +3,11 @@
 //! - [`maker`]: computes what is missing and assembles the map; shards, and their merge
 //! - [`assembly`]: assembles a map from pieces
 //! - [`check`]: whether a map is as it was written, and what other methods give for its cells
-//! - [`check_trace`]: whether a trace follows from its case
-//! - [`look`]: interactive display of a map, window by window
+//! - `check_trace`: whether a trace follows from its case
+//! - `look`: interactive display of a map, window by window
 
 pub mod assembly;
 pub mod check;
-pub mod check_trace;
-pub mod look;
+pub(crate) mod check_trace;
+pub(crate) mod look;
 pub mod maker;

@@ -10,12 +10,12 @@
 
 use num_complex::Complex64;
 
-pub use libm::{acos, atan2, cbrt, cos, exp, expm1, hypot, log as ln, pow, sin, sincos};
+pub(crate) use libm::{acos, atan2, cbrt, cos, exp, expm1, hypot, log as ln, pow, sin, sincos};
 
 /// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power
 /// is the inverse of the positive one.
 #[must_use]
-pub fn power(base: f64, exponent: i32) -> f64 {
+pub(crate) fn power(base: f64, exponent: i32) -> f64 {
     let (mut square, mut left, mut product) = (base, exponent.unsigned_abs(), 1.0);
     while left > 0 {
         if left % 2 == 1 {
@@ -30,7 +30,7 @@ pub fn power(base: f64, exponent: i32) -> f64 {
 /// log₂ of `x` to 1e-8, in a third of the time of the exact one.
 #[inline]
 #[must_use]
-pub fn rough_log2(x: f64) -> f64 {
+pub(crate) fn rough_log2(x: f64) -> f64 {
     const SQRT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
     const ODD: [f64; 5] = [2.0, 2.0 / 3.0, 2.0 / 5.0, 2.0 / 7.0, 2.0 / 9.0];
     if !(x.is_normal() && x > 0.0) {
@@ -48,7 +48,7 @@ pub fn rough_log2(x: f64) -> f64 {
 /// 2 to the power `y`, with a relative error of 2e-7.
 #[inline]
 #[must_use]
-pub fn rough_exp2(y: f64) -> f64 {
+pub(crate) fn rough_exp2(y: f64) -> f64 {
     // Adding this to a small number rounds it to an integer.
     const ROUNDING: f64 = 1.5 / f64::EPSILON;
     if y.is_nan() || y.abs() > 1000.0 {
@@ -66,27 +66,27 @@ pub fn rough_exp2(y: f64) -> f64 {
 /// step.
 #[inline]
 #[must_use]
-pub fn rough_root(x: f64, order: usize) -> f64 {
+pub(crate) fn rough_root(x: f64, order: usize) -> f64 {
     rough_exp2(rough_log2(x) / order as f64)
 }
 
 /// |z|, without overflow on the way.
 #[inline]
 #[must_use]
-pub fn norm(z: Complex64) -> f64 {
+pub(crate) fn norm(z: Complex64) -> f64 {
     hypot(z.re, z.im)
 }
 
 /// The argument of `z` in [−π, π].
 #[inline]
 #[must_use]
-pub fn arg(z: Complex64) -> f64 {
+pub(crate) fn arg(z: Complex64) -> f64 {
     atan2(z.im, z.re)
 }
 
 /// √z with a real part of at least 0, for numbers whose size does not overflow.
 #[must_use]
-pub fn sqrt(z: Complex64) -> Complex64 {
+pub(crate) fn sqrt(z: Complex64) -> Complex64 {
     // The larger part first, then the other from their product.
     let large = (0.5 * (z.re.abs() + norm(z))).sqrt();
     if large == 0.0 {

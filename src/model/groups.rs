@@ -49,7 +49,7 @@ impl Groups {
 }
 
 /// Numbers for which B and A are written: real, complex, enclosures.
-pub trait Ring: Copy + Add<Output = Self> + Mul<Output = Self> {
+pub(crate) trait Ring: Copy + Add<Output = Self> + Mul<Output = Self> {
     /// This number and 1.
     #[must_use]
     fn plus_one(self) -> Self;
@@ -85,26 +85,26 @@ impl Ring for Complex64 {
 
 /// B = λ² + bλ + 1.
 #[inline]
-pub fn open_loop<B, R: Ring + Add<B, Output = R>>(b: B, lambda: R) -> R {
+pub(crate) fn open_loop<B, R: Ring + Add<B, Output = R>>(b: B, lambda: R) -> R {
     (lambda * (lambda + b)).plus_one()
 }
 
 /// A = a_n + a_v (b + λ), where b + λ is `moving`.
 #[inline]
-pub fn feedback<N: Add<R, Output = R>, R: Ring>(a_n: N, a_v: f64, moving: R) -> R {
+pub(crate) fn feedback<N: Add<R, Output = R>, R: Ring>(a_n: N, a_v: f64, moving: R) -> R {
     a_n + moving.scaled(a_v)
 }
 
 /// The coefficients of B, the constant first.
 #[must_use]
-pub const fn open_loop_coefficients(b: f64) -> [f64; 3] {
+pub(crate) const fn open_loop_coefficients(b: f64) -> [f64; 3] {
     [1.0, b, 1.0]
 }
 
 /// The coefficients of A, the constant first.
 #[inline]
 #[must_use]
-pub fn feedback_coefficients(groups: Groups) -> [f64; 2] {
+pub(crate) fn feedback_coefficients(groups: Groups) -> [f64; 2] {
     let Groups { b, a_v, a_n } = groups;
     [feedback(a_n, a_v, b), a_v]
 }

@@ -26,15 +26,15 @@
 //! - `stop`: a flag that ends computations nobody waits for any more
 //! - `table`: a monotone cubic curve through measured points
 
-pub mod elementary;
+pub(crate) mod elementary;
 mod error;
 mod feedback;
-pub mod groups;
+pub(crate) mod groups;
 pub mod known_cases;
 pub mod law;
 mod oscillator;
-pub mod rate_and_state;
-pub mod series;
+pub(crate) mod rate_and_state;
+pub(crate) mod series;
 pub mod stop;
 pub mod table;
 

@@ -1,13 +1,13 @@
 //! Polynomials in the time since the start of a step: Taylor series of a solution, cut off.
 
 /// Highest order of a series.
-pub const MOST_ORDER: usize = 20;
+pub(crate) const MOST_ORDER: usize = 20;
 
 /// Coefficients c₀ … c_N of Σ c_k s^k; those beyond the order in use mean nothing.
-pub type Coefficients = [f64; MOST_ORDER + 1];
+pub(crate) type Coefficients = [f64; MOST_ORDER + 1];
 
 /// 1/(k + 1).
-pub const PER_NEXT: Coefficients = {
+pub(crate) const PER_NEXT: Coefficients = {
     let mut inverse = [1.0; MOST_ORDER + 1];
     let mut k = 1;
     while k <= MOST_ORDER {
@@ -56,7 +56,7 @@ fn sum(c: &[f64], s: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// Σ c_k s^k.
 #[inline]
 #[must_use]
-pub fn value(c: &[f64], s: f64) -> f64 {
+pub(crate) fn value(c: &[f64], s: f64) -> f64 {
     sum(c, s, |c| c)
 }
 
@@ -69,7 +69,7 @@ fn size(c: &[f64], s: f64) -> f64 {
 /// An upper bound of the distance of a polynomial from c₀ on [0, `end`].
 #[inline]
 #[must_use]
-pub fn spread(c: &[f64], end: f64) -> f64 {
+pub(crate) fn spread(c: &[f64], end: f64) -> f64 {
     end * size(&c[1..], end)
 }
 
@@ -87,7 +87,7 @@ fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
 /// The coefficients about s = `by` of the polynomial `c`, see [`shift`].
 #[inline]
 #[must_use]
-pub fn shifted(c: &[f64], by: f64) -> Coefficients {
+pub(crate) fn shifted(c: &[f64], by: f64) -> Coefficients {
     let mut about = [0.0; MOST_ORDER + 1];
     shift(c, by, &mut about);
     about
@@ -98,7 +98,7 @@ pub fn shifted(c: &[f64], by: f64) -> Coefficients {
 ///
 /// Horner's scheme takes as many operations, but each waits for the one before.
 #[inline]
-pub fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
+pub(crate) fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
     let (low, high) = about.split_at_mut(c.len());
     low.copy_from_slice(c);
     high.fill(0.0);
@@ -116,7 +116,7 @@ pub fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
 /// the coefficients found last are needed last.
 #[inline(always)]
 #[must_use]
-pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
+pub(crate) fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
     let k = k.min(MOST_ORDER);
     let middle = k / 2;
     let (mut low, mut high) = (0.0, 0.0);
@@ -131,7 +131,7 @@ pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
 
 /// The coefficients of the derivative of `c`, times `factor`.
 #[must_use]
-pub fn derivative(c: &[f64], factor: f64) -> Coefficients {
+pub(crate) fn derivative(c: &[f64], factor: f64) -> Coefficients {
     let mut slope = [0.0; MOST_ORDER + 1];
     for (k, (slope, c)) in slope.iter_mut().zip(&c[1..]).enumerate() {
         *slope = factor * (k + 1) as f64 * c;
@@ -146,7 +146,7 @@ pub fn derivative(c: &[f64], factor: f64) -> Coefficients {
 /// a simple zero the steps are Newton's; a minimum within rounding of zero counts as one. Zeros at
 /// s = 0 itself are divided out.
 #[must_use]
-pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
+pub(crate) fn first_zero(c: &[f64], end: f64) -> Option<f64> {
     let multiplicity = c.iter().position(|&c| c != 0.0)?;
     let c = &c[multiplicity..];
     // The rest of the series cannot outweigh its first term.
@@ -201,7 +201,7 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
 ///
 /// Extrema are looked for in eighths of the range; a step of an integrator holds one at most.
 #[must_use]
-pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
+pub(crate) fn largest(c: &[f64], end: f64, known: f64) -> f64 {
     let Some((first, rest)) = c.split_first() else {
         return known;
     };

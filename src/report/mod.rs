@@ -11,13 +11,13 @@
 
 mod known;
 #[cfg(feature = "cli")]
-pub mod log;
-pub mod numbers;
+pub(crate) mod log;
+pub(crate) mod numbers;
 #[cfg(feature = "picture")]
-pub mod picture;
+pub(crate) mod picture;
 pub mod preview;
 #[cfg(feature = "cli")]
-pub mod progress;
+pub(crate) mod progress;
 #[cfg(feature = "cli")]
-pub mod table;
-pub mod visible;
+pub(crate) mod table;
+pub(crate) mod visible;

@@ -12,13 +12,13 @@ use crate::text::toml_reader::{Entry, SpecError};
 
 /// Independent scramblings of the sequence of starts. Their spread estimates the error of a share,
 /// to within 18 %.
-pub const SCRAMBLINGS: u32 = 16;
+pub(crate) const SCRAMBLINGS: u32 = 16;
 /// Starts of a cell if the sweep file gives no number.
-pub const STARTS: u32 = 256;
+pub(crate) const STARTS: u32 = 256;
 /// The fewest starts: four in each scrambling.
-pub const FEWEST_STARTS: u32 = 4 * SCRAMBLINGS;
+pub(crate) const FEWEST_STARTS: u32 = 4 * SCRAMBLINGS;
 /// The most starts: 2¹⁶ in each scrambling, the length of the sequence.
-pub const MOST_STARTS: u32 = SCRAMBLINGS << 16;
+pub(crate) const MOST_STARTS: u32 = SCRAMBLINGS << 16;
 
 /// What the starts are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub enum Over {
 
 impl Over {
     /// All.
-    pub const ALL: [Self; 2] = [Self::State, Self::Phase];
+    pub(crate) const ALL: [Self; 2] = [Self::State, Self::Phase];
 
     /// The name in flags, sweep files and maps.
     #[must_use]
@@ -48,11 +48,11 @@ impl Over {
 pub struct Basin {
     /// What the starts are.
     pub over: Over,
-    /// How many are followed: a power of two between [`FEWEST_STARTS`] and [`MOST_STARTS`].
+    /// How many are followed: a power of two between `FEWEST_STARTS` and `MOST_STARTS`.
     pub starts: u32,
-    /// The range of ẋ at t = 0; none: see [`Basin::velocities`].
+    /// The range of ẋ at t = 0; none: see `Basin::velocities`.
     pub x_dot0: Option<[f64; 2]>,
-    /// The range of the elongation at t = 0 and before; none: see [`Basin::elongations`].
+    /// The range of the elongation at t = 0 and before; none: see `Basin::elongations`.
     pub a0: Option<[f64; 2]>,
 }
 
@@ -112,7 +112,7 @@ impl Basin {
     ///
     /// # Errors
     /// Says which numbers are allowed.
-    pub fn check_starts(starts: u64) -> Result<u32, String> {
+    pub(crate) fn check_starts(starts: u64) -> Result<u32, String> {
         let range = u64::from(FEWEST_STARTS)..=u64::from(MOST_STARTS);
         match starts.is_power_of_two() && range.contains(&starts) {
             true => Ok(starts as u32),
@@ -126,7 +126,7 @@ impl Basin {
     ///
     /// # Errors
     /// When an end is outside the parameter's range, or the ends are reversed.
-    pub fn check_range(parameter: Parameter, range: [f64; 2]) -> Result<[f64; 2], String> {
+    pub(crate) fn check_range(parameter: Parameter, range: [f64; 2]) -> Result<[f64; 2], String> {
         let [from, to] = range;
         for end in range {
             parameter.check(end).map_err(|e| e.to_string())?;
@@ -147,7 +147,7 @@ impl Basin {
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn velocities(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
+    pub(crate) fn velocities(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
         let fastest = || {
             let oscillator = setting.oscillator()?;
             let released = stuck(setting)? / oscillator.time_unit();
@@ -162,7 +162,7 @@ impl Basin {
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub fn elongations(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
+    pub(crate) fn elongations(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
         let sticking = || stuck(setting).map(|limit| [-limit, limit]);
         self.a0.map_or_else(sticking, Ok)
     }

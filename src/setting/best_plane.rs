@@ -6,7 +6,7 @@ use crate::linear::best::SearchedGain;
 
 /// The gain that a parameter is; none for other parameters.
 #[must_use]
-pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
+pub(crate) fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
     match parameter {
         Parameter::AlphaV => Some(SearchedGain::Velocity),
         Parameter::AlphaN => Some(SearchedGain::Load),
@@ -16,7 +16,7 @@ pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
 
 /// The parameter that a gain is.
 #[must_use]
-pub const fn parameter_of(gain: SearchedGain) -> Parameter {
+pub(crate) const fn parameter_of(gain: SearchedGain) -> Parameter {
     match gain {
         SearchedGain::Velocity => Parameter::AlphaV,
         SearchedGain::Load => Parameter::AlphaN,
@@ -26,7 +26,7 @@ pub const fn parameter_of(gain: SearchedGain) -> Parameter {
 /// The axes (gain, delay) of the planes in which the best setting is searched for: the last gain
 /// axis and the delay, if both have more than one point.
 #[must_use]
-pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
+pub(crate) fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
     let gain = axes.iter().rposition(|axis| {
         axis.len() > 1 && axis.parameter.known().and_then(searched_gain).is_some()
     })?;

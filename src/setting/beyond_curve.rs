@@ -10,14 +10,14 @@ use crate::text::Shown;
 impl Setting {
     /// A remark on a v0 beyond the points of a measured friction law.
     #[must_use]
-    pub fn beyond_curve(&self, units: &Units) -> Option<String> {
+    pub(crate) fn beyond_curve(&self, units: &Units) -> Option<String> {
         let v0 = Parameter::V0;
         remark(self.law()?, (v0.name(), &[self.get(v0)]), units)
     }
 
     /// A remark on a critical velocity beyond the points of a measured friction law.
     #[must_use]
-    pub fn vc_beyond_curve(&self, vc: f64, units: &Units) -> Option<String> {
+    pub(crate) fn vc_beyond_curve(&self, vc: f64, units: &Units) -> Option<String> {
         remark(self.law()?, ("v_c", &[vc]), units)
     }
 }
@@ -25,7 +25,7 @@ impl Setting {
 impl SweepSpec {
     /// A remark on values of v0, fixed or of an axis, beyond the points of a measured friction law.
     #[must_use]
-    pub fn beyond_curve(&self) -> Option<String> {
+    pub(crate) fn beyond_curve(&self) -> Option<String> {
         let axis = self.axes.iter().find(|a| a.parameter == Parameter::V0);
         let fixed = [self.fixed.get(Parameter::V0)];
         let speeds = axis.map_or(&fixed[..], |axis| &axis.values);

@@ -70,7 +70,7 @@ pub struct CaseSpec {
     pub setting: Setting,
     /// The motion.
     pub case: Case,
-    /// Whether the file gives no start. The block then starts faster than sliding by [`DISTURBED`]:
+    /// Whether the file gives no start. The block then starts faster than sliding by `DISTURBED`:
     /// exactly in equilibrium it would stay there, stable or not.
     pub start_assumed: bool,
     /// End of the trace, in time; none for the time when the outcome is known.
@@ -85,7 +85,7 @@ pub struct CaseSpec {
 
 /// The kind of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TextKind {
+pub(crate) enum TextKind {
     /// A sweep file.
     Sweep,
     /// A case file.
@@ -98,7 +98,7 @@ pub enum TextKind {
 
 /// The kind of a text, by its keys; none where they do not fit one kind.
 #[must_use]
-pub fn kind_of_text(text: &str) -> Option<TextKind> {
+pub(crate) fn kind_of_text(text: &str) -> Option<TextKind> {
     let document = parse(text).ok()?;
     let entries = entries(document.get_ref(), "");
     let all = |known: &[&str]| entries.iter().all(|entry| known.contains(&entry.key));
@@ -118,7 +118,7 @@ pub fn kind_of_text(text: &str) -> Option<TextKind> {
 /// Whether a text is a case file rather than a sweep file. It has no key that only sweeps have, and
 /// either a key that only cases have or everything that a case needs.
 #[must_use]
-pub fn is_case_file(text: &str) -> bool {
+pub(crate) fn is_case_file(text: &str) -> bool {
     let Ok(document) = parse(text) else {
         return false;
     };

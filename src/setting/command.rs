@@ -12,7 +12,7 @@ use crate::critical::switch_on::Phase;
 /// are left out, and numbers have the fewest digits from which they are read unchanged. None for a
 /// table, whose points are in a file.
 #[must_use]
-pub fn command_line(
+pub(crate) fn command_line(
     command: &str,
     setting: &Setting,
     wanted: impl Fn(Parameter) -> bool,
@@ -37,7 +37,7 @@ pub fn command_line(
 
 /// `slipmap vc` for a setting; its v0 and its start are ignored.
 #[must_use]
-pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
+pub(crate) fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     let command = match protocol {
         Protocol::Follow => "vc".to_owned(),
         Protocol::SwitchOn(Phase::Worst(_)) => "vc --protocol=switch-on --phase=worst".to_owned(),
@@ -52,7 +52,7 @@ pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
 /// `slipmap point` for a setting. None for a table and for a system that is no part of the program,
 /// whose files are not known.
 #[must_use]
-pub fn point_command(setting: &Setting) -> Option<String> {
+pub(crate) fn point_command(setting: &Setting) -> Option<String> {
     let Some(model) = setting.system() else {
         return command_line("point", setting, |parameter| of_point(setting, parameter));
     };

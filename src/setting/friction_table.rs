@@ -157,7 +157,7 @@ pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
 ///
 /// # Errors
 /// As there, and when the law is ill-posed, see [`FrictionLaw::table`].
-pub fn table_of_law(text: &str, mu_s: Option<f64>) -> Result<Table, SpecError> {
+pub(crate) fn table_of_law(text: &str, mu_s: Option<f64>) -> Result<Table, SpecError> {
     let (table, at_rest) = read_columns(text)?;
     let default = Parameter::MuS.default_value().filter(|_| mu_s.is_none());
     let posed = FrictionLaw::table(table.clone(), mu_s.or(default).unwrap_or(1.0));

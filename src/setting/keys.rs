@@ -3,7 +3,7 @@
 
 /// A key of a file, with the facts about it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Key {
+pub(crate) struct Key {
     /// The name.
     pub name: &'static str,
     /// The values that it takes: a type and, where there are limits, its range.
@@ -74,7 +74,7 @@ const UNITS_KEY: Key = key(
 );
 
 /// The keys of a sweep file.
-pub const SWEEP: [Key; 18] = [
+pub(crate) const SWEEP: [Key; 18] = [
     TITLE,
     key(
         "system",
@@ -162,7 +162,7 @@ pub const SWEEP: [Key; 18] = [
 ];
 
 /// The keys of a range of an axis.
-pub const RANGE: [Key; 4] = [
+pub(crate) const RANGE: [Key; 4] = [
     needed("from", "a number", "the first value"),
     needed("to", "a number", "the last value"),
     needed(
@@ -179,7 +179,7 @@ pub const RANGE: [Key; 4] = [
 ];
 
 /// The keys of `[friction]` besides the parameters of the laws.
-pub const FRICTION_TABLE: [Key; 4] = [
+pub(crate) const FRICTION_TABLE: [Key; 4] = [
     needed("law", "the name of a law", "the law"),
     key(
         "speeds",
@@ -203,7 +203,7 @@ pub const FRICTION_TABLE: [Key; 4] = [
 ];
 
 /// The keys of `[simulation]` in a sweep file; in a case file they stand at the top.
-pub const SIMULATION: [Key; 3] = [
+pub(crate) const SIMULATION: [Key; 3] = [
     key(
         "horizon",
         "a time, from 1e-12 to 1e12",
@@ -225,7 +225,7 @@ pub const SIMULATION: [Key; 3] = [
 ];
 
 /// The keys of `[basin]`.
-pub const BASIN: [Key; 4] = [
+pub(crate) const BASIN: [Key; 4] = [
     key(
         "over",
         "\"state\" or \"phase\"",
@@ -257,7 +257,7 @@ pub const BASIN: [Key; 4] = [
 pub(super) const ENDS: [&str; 2] = ["from", "to"];
 
 /// The keys of `[units]`.
-pub const UNITS: [Key; 3] = [
+pub(crate) const UNITS: [Key; 3] = [
     needed("force", "one word of 1 to 20 letters", "the unit of force"),
     needed(
         "length",
@@ -268,7 +268,7 @@ pub const UNITS: [Key; 3] = [
 ];
 
 /// The keys of `[tolerance]`.
-pub const TOLERANCE: [Key; 1] = [key(
+pub(crate) const TOLERANCE: [Key; 1] = [key(
     "marginal",
     "a number from 2.220446049250313e-16 to 0.01",
     "1.4210854715202004e-14",
@@ -276,7 +276,7 @@ pub const TOLERANCE: [Key; 1] = [key(
 )];
 
 /// The keys of a case file.
-pub const CASE: [Key; 10] = [
+pub(crate) const CASE: [Key; 10] = [
     TITLE,
     needed("friction", "a table", "the friction law"),
     FIXED,
@@ -300,7 +300,7 @@ pub const CASE: [Key; 10] = [
 ];
 
 /// The keys of `[trace]`.
-pub const TRACE: [Key; 3] = [
+pub(crate) const TRACE: [Key; 3] = [
     key(
         "until",
         "a time, from 1e-12 to 1e12",

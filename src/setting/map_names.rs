@@ -4,13 +4,13 @@
 use super::field::Field;
 
 /// Name of the status of each cell.
-pub const STATUS: &str = "status";
+pub(crate) const STATUS: &str = "status";
 /// Name of the group of crossing curves.
-pub const BOUNDARIES: &str = "boundaries";
+pub(crate) const BOUNDARIES: &str = "boundaries";
 /// Name of the group of best settings.
-pub const BEST: &str = "best";
+pub(crate) const BEST: &str = "best";
 /// The most axes: HDF5 has no datasets of more dimensions.
-pub const MOST_AXES: usize = 32;
+pub(crate) const MOST_AXES: usize = 32;
 
 /// Every name that a parameter of a system cannot have, because it stands beside the axes in a map
 /// or did in an earlier version.

@@ -15,7 +15,7 @@
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
 //!   constructor
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
-//! - [`linear_model`]: the feedback, the groups and the linear model of a setting
+//! - `linear_model`: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
 //! - `needs`: what fields need of a sweep: a row for each need
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
@@ -39,37 +39,37 @@
 
 pub mod axis;
 pub mod basin;
-pub mod best_plane;
+pub(crate) mod best_plane;
 mod beyond_curve;
-pub mod case_file;
+pub(crate) mod case_file;
 mod catalogue;
-pub mod command;
+pub(crate) mod command;
 pub mod field;
 pub mod friction_table;
 mod given;
 mod given_system;
-pub mod keys;
+pub(crate) mod keys;
 pub mod law_kind;
 mod limit_spec;
-pub mod linear_model;
+pub(crate) mod linear_model;
 pub mod map_names;
 pub(crate) mod needs;
 mod own_system;
-pub mod parameter;
-pub mod point_file;
-pub mod quantity;
+pub(crate) mod parameter;
+pub(crate) mod point_file;
+pub(crate) mod quantity;
 pub mod regime_at_v0;
 pub mod search;
-pub mod setting_text;
+pub(crate) mod setting_text;
 pub mod simulation;
-pub mod source;
-pub mod spec;
+pub(crate) mod source;
+pub(crate) mod spec;
 mod spec_values;
 mod sweep_file;
 pub mod system;
-pub mod table_file;
-pub mod units;
-pub mod values;
+pub(crate) mod table_file;
+pub(crate) mod units;
+pub(crate) mod values;
 mod vc_keys;
 
 pub use axis::Axis;

@@ -230,7 +230,7 @@ impl SweepSpec {
     ///
     /// # Errors
     /// In the words of sweep files, without a place.
-    pub fn check_needs(&self) -> Result<(), SpecError> {
+    pub(crate) fn check_needs(&self) -> Result<(), SpecError> {
         let asked = FieldsAsked::of(self);
         let stages = [Stage::Protocol, Stage::Model, Stage::Company, Stage::Values];
         match stages.into_iter().find_map(|stage| unmet(&asked, stage)) {

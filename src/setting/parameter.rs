@@ -645,7 +645,7 @@ impl Parameter {
         self.row().dimension
     }
 
-    /// The default value; none for a required parameter, and for those of [`Group::Start`].
+    /// The default value; none for a required parameter, and for those of `Group::Start`.
     #[must_use]
     pub const fn default_value(self) -> Option<f64> {
         self.row().default

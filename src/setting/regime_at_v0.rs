@@ -17,7 +17,7 @@ pub enum RegimeAtV0 {
 
 impl RegimeAtV0 {
     /// All, in the order of their numbers in a map.
-    pub const ALL: [Self; 5] = [
+    pub(crate) const ALL: [Self; 5] = [
         Self::Stable,
         Self::Bistable,
         Self::Unstable,

@@ -6,11 +6,11 @@ use crate::critical::switch_on::{Phase, Scan};
 use crate::critical::{GRAZE_PRECISION, RampOptions};
 
 /// Phases over one cycle for the worst case.
-pub const PHASES: u32 = 32;
+pub(crate) const PHASES: u32 = 32;
 
 /// A protocol of its own, for whole sweeps: Coulomb friction and load control as τ → 0, in the
 /// closed form of [`crate::critical::limit`].
-pub const LIMIT: &str = "limit";
+pub(crate) const LIMIT: &str = "limit";
 
 /// How motions are started and what is asked of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ pub enum Protocol {
 
 impl Protocol {
     /// Names of the protocols.
-    pub const NAMES: [&'static str; 2] = ["follow", "switch-on"];
+    pub(crate) const NAMES: [&'static str; 2] = ["follow", "switch-on"];
 
     /// The name in flags, sweep files and maps.
     #[must_use]
@@ -48,7 +48,7 @@ impl Protocol {
 
     /// The largest v0 of the search, in units of μ_S N0/√(κM).
     #[must_use]
-    pub fn v_max(self) -> f64 {
+    pub(crate) fn v_max(self) -> f64 {
         match self {
             Self::Follow => RampOptions::default().v_max,
             Self::SwitchOn(_) => Scan::default().v_max,

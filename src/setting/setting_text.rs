@@ -9,13 +9,13 @@ use crate::model::table::TableColumn;
 
 /// A number as text that is read as the same number.
 #[must_use]
-pub fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
 /// A table of the `wanted` parameters.
 #[must_use]
-pub fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
+pub(crate) fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
     let mut text = format!("\n[{name}]\n");
     for parameter in Parameter::ALL.into_iter().filter(|&p| wanted(p)) {
         let value = number(setting.get(parameter));
@@ -26,13 +26,13 @@ pub fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) 
 
 /// Whether a point of this setting has the parameter.
 #[must_use]
-pub fn of_point(setting: &Setting, parameter: Parameter) -> bool {
+pub(crate) fn of_point(setting: &Setting, parameter: Parameter) -> bool {
     !parameter.of_start() && setting.uses(parameter)
 }
 
 /// The tables of a setting, with its `wanted` parameters but without its start.
 #[must_use]
-pub fn setting_text(
+pub(crate) fn setting_text(
     setting: &Setting,
     units: &Units,
     wanted: impl Fn(Parameter) -> bool,

@@ -22,7 +22,7 @@ const MOST_STEPS: u64 = 1_000_000_000;
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// The parameters that motions do not support.
-pub const NOT_IN_MOTIONS: &[Parameter] = &[
+pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::LoadLag,
     Parameter::VelocityLag,
     Parameter::SensorLag,
@@ -44,7 +44,7 @@ pub struct Simulation {
 
 /// The disturbance of a motion without a given start: exactly in equilibrium a block would stay
 /// there, stable or not.
-pub const DISTURBED: f64 = 0.01;
+pub(crate) const DISTURBED: f64 = 0.01;
 
 impl Default for Simulation {
     fn default() -> Self {
@@ -60,7 +60,7 @@ impl Default for Simulation {
 /// A remark on a start that is not given, where sliding is disturbed by this share of v0; none
 /// without a disturbance.
 #[must_use]
-pub fn assumed_start(disturbance: f64) -> Option<String> {
+pub(crate) fn assumed_start(disturbance: f64) -> Option<String> {
     (disturbance != 0.0).then(|| {
         format!(
             "none is given: each block begins with x_dot0 = {} v0, {} % faster than it is pulled",
@@ -85,7 +85,7 @@ impl Simulation {
 
     /// A remark on a start that is not given; none where motions are not disturbed.
     #[must_use]
-    pub fn assumed_start(&self) -> Option<String> {
+    pub(crate) fn assumed_start(&self) -> Option<String> {
         assumed_start(self.disturbance)
     }
 

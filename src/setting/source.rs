@@ -53,7 +53,7 @@ pub enum Cost {
 impl Source {
     /// What a cell costs.
     #[must_use]
-    pub const fn cost(self) -> Cost {
+    pub(crate) const fn cost(self) -> Cost {
         match self {
             Self::Line | Self::Linear(_) | Self::Limit(_) => Cost::Counted,
             Self::Roots(_) => Cost::Rooted,

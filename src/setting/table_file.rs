@@ -10,7 +10,7 @@ use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// A text in which the names of other files are replaced by their contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Inlined {
+pub(crate) struct Inlined {
     /// The text that is read and stored.
     pub text: String,
     /// The place of the name in the original text, and the place of the contents in the new one.
@@ -19,7 +19,7 @@ pub struct Inlined {
 
 /// Why the contents of a named file could not be put into a text.
 #[derive(Debug, Clone, PartialEq)]
-pub enum NotInlined {
+pub(crate) enum NotInlined {
     /// At a place of the text.
     Here(SpecError),
     /// At a place of a named file.
@@ -48,7 +48,7 @@ impl Inlined {
     /// At the name, when the file cannot be read or does not contain a table. Inside the named
     /// file, when it is not a valid system.
     /// system: in that file.
-    pub fn new(
+    pub(crate) fn new(
         text: &str,
         read: impl FnOnce(&str) -> Result<String, String>,
     ) -> Result<Self, NotInlined> {
@@ -87,7 +87,7 @@ impl Inlined {
 
     /// An error in [`Inlined::text`], moved to its place in the original text.
     #[must_use]
-    pub fn in_original(&self, mut error: SpecError) -> SpecError {
+    pub(crate) fn in_original(&self, mut error: SpecError) -> SpecError {
         if let (Some((old, new)), Some(span)) = (&self.places, &mut error.span) {
             if span.start >= new.end {
                 let shifted = |at: usize| at - new.end + old.end;

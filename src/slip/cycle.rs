@@ -90,7 +90,7 @@ pub fn after_release(
 ///
 /// # Errors
 /// See [`NoCycle`].
-pub fn restart_after_release(
+pub(crate) fn restart_after_release(
     motion: &mut Motion,
     parameters: &Parameters,
     accuracy: Accuracy,

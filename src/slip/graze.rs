@@ -10,7 +10,7 @@ impl Step {
     /// The first minimum of ẋ inside the step: the time since its start, and the value. None where
     /// there is none.
     #[must_use]
-    pub fn speed_minimum(&self) -> Option<(f64, f64)> {
+    pub(crate) fn speed_minimum(&self) -> Option<(f64, f64)> {
         let slope = derivative(Self::range(&self.u, self.order), 1.0);
         let slope = &slope[..self.order];
         // A step is taken to have at most one minimum; the slopes at its ends show whether it does.
@@ -27,7 +27,7 @@ impl Step {
     /// For a slip backwards the value is minus the maximum. It is a smooth function of the
     /// parameters and is zero where the stop is a graze.
     #[must_use]
-    pub fn minimum_beyond_stop(&self) -> (f64, f64) {
+    pub(crate) fn minimum_beyond_stop(&self) -> (f64, f64) {
         let mut about = shifted(Self::range(&self.u, self.order), self.length);
         if about[1] > 0.0 {
             for c in &mut about {

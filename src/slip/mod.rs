@@ -4,7 +4,7 @@
 //! - [`cycle`]: motions that begin in uncontrolled stick-slip
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
-//! - [`sliding`]: linear stability of sliding
+//! - `sliding`: linear stability of sliding
 //! - [`step`]: the polynomials of one step
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
@@ -18,6 +18,6 @@ mod graze;
 mod history;
 pub mod motion;
 pub mod outcome;
-pub mod sliding;
+pub(crate) mod sliding;
 pub mod step;
 pub mod watch;

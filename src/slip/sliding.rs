@@ -29,7 +29,7 @@ impl Sliding {
 
     /// The spectral abscissa, in units of √(κ/M), if it is known and all roots are stable.
     #[must_use]
-    pub fn stable_abscissa(&self) -> Option<f64> {
+    pub(crate) fn stable_abscissa(&self) -> Option<f64> {
         let roots = self.roots();
         let count = roots
             .line(1.0)

@@ -93,7 +93,7 @@ impl Step {
 
     /// The smaller one of `known` and the smallest load of the step.
     #[must_use]
-    pub fn smallest_load(&self, known: f64) -> f64 {
+    pub(crate) fn smallest_load(&self, known: f64) -> f64 {
         if self.n[0] - spread(Self::range(&self.n, self.order), self.length) >= known {
             return known;
         }
@@ -103,13 +103,13 @@ impl Step {
 
     /// The larger one of `known` and the largest |a| of the step.
     #[must_use]
-    pub fn largest_elongation(&self, known: f64) -> f64 {
+    pub(crate) fn largest_elongation(&self, known: f64) -> f64 {
         self.farthest(&self.a, 0.0, known)
     }
 
     /// The largest |ẋ − `v0`| or |a − `rest`| of the step, or `known` if that is larger.
     #[must_use]
-    pub fn deviation(&self, (v0, rest): (f64, f64), known: f64) -> f64 {
+    pub(crate) fn deviation(&self, (v0, rest): (f64, f64), known: f64) -> f64 {
         let one = self.farthest(&self.u, v0, known);
         self.farthest(&self.a, rest, one)
     }
@@ -127,7 +127,7 @@ impl Step {
 
     /// The last time in the step at which |ẋ − `v0`| exceeds `band`; none if it never does.
     #[must_use]
-    pub fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
+    pub(crate) fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
         let u = Self::range(&self.u, self.order);
         if (u[0] - v0).abs() + spread(u, self.length) <= band {
             return None;

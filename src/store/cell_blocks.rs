@@ -13,7 +13,7 @@ const MOST_BYTES: usize = 32 << 20;
 
 /// Neighbouring cells of a map, row by row, last axis fastest.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CellBlock {
+pub(crate) struct CellBlock {
     /// Index of the first cell along each axis.
     pub first: Vec<usize>,
     /// Number of cells along each axis.
@@ -31,7 +31,7 @@ impl MapFile {
     ///
     /// # Errors
     /// When the map lacks one of the fields or is damaged. Errors of `visit` are passed on.
-    pub fn for_each_block<E: From<StoreError>>(
+    pub(crate) fn for_each_block<E: From<StoreError>>(
         &self,
         fields: &[Field],
         held: &[Option<usize>],

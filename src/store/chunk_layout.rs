@@ -45,7 +45,7 @@ impl ChunkLayout {
     ///
     /// # Errors
     /// A description of what is wrong when `stored` is no valid chunk of this layout.
-    pub fn decoded(&self, stored: Vec<u8>) -> Result<Vec<u8>, &'static str> {
+    pub(crate) fn decoded(&self, stored: Vec<u8>) -> Result<Vec<u8>, &'static str> {
         let mut bytes = stored;
         let length = self.bytes();
         if self.deflated {

@@ -11,7 +11,7 @@ use crate::sweep::plan::MOST_TILES;
 /// The columns of a map, each open: the fields in the order of [`MapFile::fields`], then the
 /// status.
 #[derive(Debug)]
-pub struct FileColumns {
+pub(crate) struct FileColumns {
     map: MapFile,
     columns: Vec<Chunks>,
 }
@@ -21,7 +21,7 @@ impl FileColumns {
     ///
     /// # Errors
     /// When one is not stored as slipmap stores columns.
-    pub fn of(map: MapFile) -> Result<Self, StoreError> {
+    pub(crate) fn of(map: MapFile) -> Result<Self, StoreError> {
         let fields = map.fields().iter();
         let columns = fields.map(|&field| (map.name_of(field), field.storage()));
         let open = |(name, storage): (&str, Storage)| {
@@ -55,13 +55,13 @@ impl FileColumns {
 
     /// The map that the columns belong to.
     #[must_use]
-    pub fn map(&self) -> &MapFile {
+    pub(crate) fn map(&self) -> &MapFile {
         &self.map
     }
 
     /// How a column is stored; none where there is no such column.
     #[must_use]
-    pub fn layout(&self, column: usize) -> Option<&ChunkLayout> {
+    pub(crate) fn layout(&self, column: usize) -> Option<&ChunkLayout> {
         self.columns.get(column).map(Chunks::layout)
     }
 
@@ -70,7 +70,11 @@ impl FileColumns {
     ///
     /// # Errors
     /// When the chunk cannot be read.
-    pub fn stored(&self, column: usize, offset: &[usize]) -> Result<Option<Vec<u8>>, StoreError> {
+    pub(crate) fn stored(
+        &self,
+        column: usize,
+        offset: &[usize],
+    ) -> Result<Option<Vec<u8>>, StoreError> {
         match self.columns.get(column) {
             Some(chunks) => {
                 let stored = chunks.stored(offset);

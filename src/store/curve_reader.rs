@@ -30,7 +30,7 @@ pub struct MapCurve {
 impl MapCurve {
     /// Whether it bounds the region of stable sliding.
     #[must_use]
-    pub fn bounds_stability(&self) -> bool {
+    pub(crate) fn bounds_stability(&self) -> bool {
         self.degree_of_stability == 0.0 && self.piece.stable_side != StableSide::Neither
     }
 }

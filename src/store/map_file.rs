@@ -9,7 +9,7 @@ use hdf5::{Dataset, File, Group, SliceOrIndex};
 
 use super::attributes::{one_number, text};
 use super::contents_hash::contents_hash;
-pub use super::curve_reader::MapCurve;
+pub(crate) use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
 use super::seal::{self, Seal};
@@ -221,7 +221,7 @@ impl MapFile {
         self.axes.iter().map(|a| a.values.len() as u64).product()
     }
 
-    /// A text attribute of the root, see [`schema::root`]; none where it is missing.
+    /// A text attribute of the root, see `schema::root`; none where it is missing.
     #[must_use]
     pub fn root_text(&self, name: &str) -> Option<String> {
         text(&self.file, name).ok()

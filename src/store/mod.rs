@@ -2,10 +2,10 @@
 //! place that knows HDF5. What they say is described in [`crate::sweep::described`].
 //!
 //! - [`tiles`]: finished pieces of a sweep in files of their own, checked when they are read
-//! - [`map_writer`]: the map's file, under a temporary name until it is complete
-//! - [`map_file`]: reads maps
+//! - `map_writer`: the map's file, under a temporary name until it is complete
+//! - `map_file`: reads maps
 //! - [`trace_file`]: writes motions sampled over time, and recognises them
-//! - [`output`]: the temporary name, the lock, the final rename
+//! - `output`: the temporary name, the lock, the final rename
 //! - `attributes`: attributes in the forms that every netCDF-4 reader understands
 //! - `best_reader`: reads the best settings of a map
 //! - `best_writer`: writes the best settings of every plane
@@ -24,7 +24,7 @@
 //! - `netcdf`: dimension scales as netCDF-4 readers expect them
 //! - `open`: the only way to open HDF5 files and their objects; it refuses links to other files,
 //!   filter plugins and foreign storage
-//! - [`regular`]: opens regular files, and no others, for all of slipmap
+//! - `regular`: opens regular files, and no others, for all of slipmap
 //! - `sample`: which cells are checked by a second method: some of every outcome by every method
 //! - `seal`: a checksum of all bytes of a map, appended to the file
 //! - `soundness`: whether a map's file is as it was written: schema, checksums
@@ -40,31 +40,31 @@ mod attributes;
 mod best_reader;
 mod best_writer;
 mod boundary_writer;
-pub mod cell_blocks;
-pub mod chunk_layout;
+pub(crate) mod cell_blocks;
+pub(crate) mod chunk_layout;
 mod codec;
-pub mod columns;
+pub(crate) mod columns;
 mod contents_hash;
 pub mod curve_reader;
 mod durable;
 mod error;
 mod lock;
-pub mod map_file;
+pub(crate) mod map_file;
 mod map_summary;
-pub mod map_writer;
+pub(crate) mod map_writer;
 mod netcdf;
 mod open;
-pub mod output;
-pub mod regular;
+pub(crate) mod output;
+pub(crate) mod regular;
 pub(crate) mod sample;
 mod seal;
-pub mod soundness;
+pub(crate) mod soundness;
 pub mod source;
-pub mod stamp;
+pub(crate) mod stamp;
 mod summary;
 pub mod tiles;
 pub mod trace_file;
-pub mod trace_reader;
+pub(crate) mod trace_reader;
 mod values;
 mod variables;
 

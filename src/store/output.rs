@@ -8,7 +8,7 @@ use super::durable::{rename_synced, sync};
 use super::error::StoreError;
 use super::lock;
 
-/// The place of a map that is being written. If dropped before [`Output::commit`], it leaves
+/// The place of a map that is being written. If dropped before `Output::commit`, it leaves
 /// nothing behind.
 #[derive(Debug)]
 pub struct Output {
@@ -20,7 +20,7 @@ pub struct Output {
 
 /// A hidden file beside `path`, with a name that no other program uses.
 #[must_use]
-pub fn hidden_beside(path: &Path, purpose: &str) -> PathBuf {
+pub(crate) fn hidden_beside(path: &Path, purpose: &str) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{name}.slipmap-{purpose}"))
 }
@@ -62,7 +62,7 @@ impl Output {
 
     /// Removes what a run that died has left beside `path`: a lock and a temporary file. What
     /// another run holds stays.
-    pub fn clear_leftovers(path: &Path) {
+    pub(crate) fn clear_leftovers(path: &Path) {
         let left = ["lock", "part"].map(|purpose| hidden_beside(path, purpose));
         if left.iter().any(|path| path.symlink_metadata().is_ok()) {
             drop(Self::claim(path));
@@ -77,7 +77,7 @@ impl Output {
 
     /// The name to write to.
     #[must_use]
-    pub fn part(&self) -> &Path {
+    pub(crate) fn part(&self) -> &Path {
         &self.part
     }
 
@@ -86,7 +86,7 @@ impl Output {
     ///
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.
-    pub fn commit(self) -> Result<(), StoreError> {
+    pub(crate) fn commit(self) -> Result<(), StoreError> {
         if let Ok(replaced) = self.path.metadata() {
             let mode = replaced.permissions();
             fs::set_permissions(&self.part, mode).map_err(StoreError::io("write", &self.path))?;

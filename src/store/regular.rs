@@ -47,7 +47,7 @@ impl From<NotRead> for io::Error {
 ///
 /// # Errors
 /// Where there is none, or it is no regular file.
-pub fn open(path: &Path) -> Result<File, NotRead> {
+pub(crate) fn open(path: &Path) -> Result<File, NotRead> {
     if !fs::metadata(path)?.is_file() {
         return Err(NotRead::Foreign);
     }
@@ -58,7 +58,7 @@ pub fn open(path: &Path) -> Result<File, NotRead> {
 ///
 /// # Errors
 /// Where there is none, it is no regular file, or has more bytes.
-pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     let file = open(path)?;
     // Some files of the system have more bytes than they say.
     let length = file.metadata()?.len();
@@ -77,7 +77,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
 ///
 /// # Errors
 /// Where [`open`] does not open the file, or it cannot be read.
-pub fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+pub(crate) fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     let mut bytes = Vec::new();
     open(path)?.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
@@ -87,7 +87,7 @@ pub fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
 ///
 /// # Errors
 /// Where something else has this name, or the system refuses.
-pub fn append(path: &Path) -> Result<File, NotRead> {
+pub(crate) fn append(path: &Path) -> Result<File, NotRead> {
     own(OpenOptions::new().create(true).append(true), path)
 }
 

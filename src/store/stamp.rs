@@ -6,7 +6,7 @@ use std::time::SystemTime;
 
 /// The state of a file. It stays equal until the file is replaced or written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stamp {
+pub(crate) struct Stamp {
     /// Length in bytes.
     pub length: u64,
     /// Time of the last write, where the system knows it.
@@ -18,7 +18,7 @@ pub struct Stamp {
 impl Stamp {
     /// The state of the file at `path`; none where there is no file.
     #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn of(path: &Path) -> Option<Self> {
         path.metadata().ok().map(|found| Self::told(&found))
     }
 

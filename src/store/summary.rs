@@ -239,7 +239,7 @@ impl StatusCounts {
     }
 
     /// Adds the summary of other cells.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.computed += other.computed;
         self.unflagged += other.unflagged;
         for (count, more) in self.flagged.iter_mut().zip(other.flagged) {

@@ -29,7 +29,7 @@ pub struct TraceFile {
 
 /// Whether the file at `path` can be opened and is marked as a trace, of any version.
 #[must_use]
-pub fn is_trace(path: &Path) -> bool {
+pub(crate) fn is_trace(path: &Path) -> bool {
     let file = open::to_read(path, StoreError::not_a_trace);
     file.is_ok_and(|file| one_number::<i32>(&file, trace::FORMAT_VERSION).is_some())
 }
@@ -38,7 +38,7 @@ pub fn is_trace(path: &Path) -> bool {
 ///
 /// # Errors
 /// When there is no file, or it is no trace, or one of another format version.
-pub fn case_of(path: &Path) -> Result<String, StoreError> {
+pub(crate) fn case_of(path: &Path) -> Result<String, StoreError> {
     case_text(&open::to_read(path, StoreError::not_a_trace)?, path)
 }
 
@@ -97,13 +97,13 @@ impl TraceFile {
 
     /// A text attribute of the root, see [`schema::root`]; none where it is missing.
     #[must_use]
-    pub fn root_text(&self, name: &str) -> Option<String> {
+    pub(crate) fn root_text(&self, name: &str) -> Option<String> {
         text(&self.file, name).ok()
     }
 
     /// A numeric attribute of the root; none where it is missing.
     #[must_use]
-    pub fn root_number(&self, name: &str) -> Option<f64> {
+    pub(crate) fn root_number(&self, name: &str) -> Option<f64> {
         one_number(&self.file, name)
     }
 

@@ -84,7 +84,7 @@ pub fn run<S: Sink>(
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn run_here<S: Sink>(
+pub(crate) fn run_here<S: Sink>(
     plan: &Arc<Plan>,
     todo: Todo,
     sink: &mut S,
@@ -172,7 +172,7 @@ pub fn each<I: Send, M, T: Send>(
 ///
 /// # Errors
 /// When it is stopped, or the threads cannot be started.
-pub fn each_attended<I: Sync, T: Send>(
+pub(crate) fn each_attended<I: Sync, T: Send>(
     items: &[I],
     threads: usize,
     attended: Attended,

@@ -12,7 +12,7 @@ pub(crate) mod document;
 #[cfg(feature = "sweep")]
 mod hexadecimal;
 #[cfg(feature = "sweep")]
-pub mod nearest;
+pub(crate) mod nearest;
 mod number;
 #[cfg(feature = "sweep")]
 pub(crate) mod toml_reader;

@@ -6,7 +6,7 @@ const NEAR: f64 = 0.6;
 /// The name among `known` that is most similar to `name`, if one is near; the first of equals.
 /// Upper and lower case count as equal, and so do `-` and `_`.
 #[must_use]
-pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");
     let name = plain(name);
     let alike = |known: &str| strsim::normalized_damerau_levenshtein(&name, &plain(known));
@@ -18,7 +18,7 @@ pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
 
 /// "did you mean `tau`? ", or nothing.
 #[must_use]
-pub fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
+pub(crate) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
     nearest(name, known).map_or_else(String::new, |near| format!("did you mean `{near}`? "))
 }
 

@@ -11,7 +11,7 @@ use slipmap::linear::curves::{
 };
 use slipmap::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use slipmap::linear::general::curves::trace;
-use slipmap::linear::general::{Polynomial, RootCounter, Setting, System, SystemPlane};
+use slipmap::linear::general::{Polynomial, RootCounter, System, SystemPlane, SystemSetting};
 use slipmap::model::stop::Stop;
 use slipmap::model::{Channel, Groups};
 
@@ -19,8 +19,8 @@ fn polynomial(coefficients: &[f64]) -> Polynomial {
     Polynomial::new(coefficients).unwrap()
 }
 
-fn setting(system: System, tau: f64) -> Option<Setting> {
-    (tau >= 0.0).then_some(Setting {
+fn setting(system: System, tau: f64) -> Option<SystemSetting> {
+    (tau >= 0.0).then_some(SystemSetting {
         system,
         tau,
         unit: 1.0,
@@ -31,7 +31,7 @@ fn turning(zeta: f64, width: f64) -> System {
     System::of_coefficients(&[1.0 + width, 2.0 * zeta, 1.0], &[-width]).unwrap()
 }
 
-fn count(setting: Setting, sigma: f64) -> Option<u64> {
+fn count(setting: SystemSetting, sigma: f64) -> Option<u64> {
     RootCounter::new(&setting.system)
         .right_of(setting.delay(), -sigma * setting.unit)
         .finite()
@@ -58,7 +58,7 @@ fn along_column(curves: &PlaneCurves, p: f64) -> Vec<(f64, i64)> {
     at
 }
 
-type At<'a> = &'a dyn Fn(f64, f64) -> Option<Setting>;
+type At<'a> = &'a dyn Fn(f64, f64) -> Option<SystemSetting>;
 
 /// Along columns off those of the search the counts are what the curves between make of the count
 /// at the lower edge.

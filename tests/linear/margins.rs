@@ -8,7 +8,7 @@ use crate::congruence::Chance;
 use num_complex::Complex64;
 use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::characteristic::characteristic;
-use slipmap::linear::margins::{self, Limits, Margins, Radius, Setting, SlidingLaw};
+use slipmap::linear::margins::{self, Limits, MarginSearch, Radius, Setting, SlidingLaw};
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
@@ -88,7 +88,7 @@ fn check(what: &str, from: f64, limit: f64, far: f64, at: &dyn Fn(f64) -> Settin
     }
 }
 
-fn check_setting(search: &mut Margins, setting: Setting) {
+fn check_setting(search: &mut MarginSearch, setting: Setting) {
     let Setting { groups, tau, .. } = setting;
     let Groups { b, a_v, a_n } = groups;
     let with = |groups, tau| Setting {
@@ -112,7 +112,7 @@ fn check_setting(search: &mut Margins, setting: Setting) {
 
 #[test]
 fn limits_are_those_of_brute_force() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     for setting in settings(2000, 0.0) {
         check_setting(&mut search, setting);
     }
@@ -125,7 +125,7 @@ fn limits_are_those_of_brute_force() {
 #[test]
 fn strongly_damped_settings_are_decided() {
     let mut chance = Chance(23);
-    let (mut search, mut finder) = (Margins::default(), RootFinder::default());
+    let (mut search, mut finder) = (MarginSearch::default(), RootFinder::default());
     let mut undecided = 0;
     for i in 0..240 {
         let load = i % 2 == 0;
@@ -192,7 +192,7 @@ fn roots_with_latency(setting: Setting, latency: f64) -> f64 {
 
 #[test]
 fn loop_margins_are_those_of_brute_force() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     for setting in settings(300, 0.0) {
         let found = search.of_loop(&setting);
         let size = |omega: f64| negative_loop(setting, Complex64::new(0.0, omega)).norm();
@@ -227,7 +227,7 @@ fn loop_margins_are_those_of_brute_force() {
 
 #[test]
 fn latency_margins_are_where_roots_come_in() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let near = |n: f64, whole: f64| (n - whole).abs() < 0.05;
     for setting in settings(40, 0.0).into_iter().chain(settings(20, 0.05)) {
         let margin = search.of_loop(&setting).latency;
@@ -252,7 +252,7 @@ fn latency_margins_are_those_of_another_program() {
     };
     let (_, slope_a) = weakening(0.35);
     let (mu_b, slope_b) = weakening(0.1);
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     for (b, a_v, a_n, tau, expected) in [
         (slope_a, -0.33, 0.0, 4.15, 0.142666885165),
         (slope_b, 0.0, -10.0 * mu_b, 0.5, 0.280274481666),
@@ -506,7 +506,7 @@ fn radii_of_any_setting_take_a_part_of_a_second() {
 #[test]
 fn limits_at_nearly_all_of_the_decay_are_right_or_not_known() {
     let mut chance = Chance(29);
-    let (mut search, mut finder) = (Margins::default(), RootFinder::default());
+    let (mut search, mut finder) = (MarginSearch::default(), RootFinder::default());
     let (mut known, mut unknown) = (0, 0);
     for Setting { groups, tau, .. } in settings(400, 0.0) {
         let roots = finder.rightmost(groups, tau, 1, f64::NEG_INFINITY).unwrap();

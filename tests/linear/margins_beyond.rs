@@ -8,7 +8,7 @@ use crate::congruence::Chance;
 use num_complex::Complex64;
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, System};
-use slipmap::linear::margins::{self, Beyond, Case, Margins, Radius, Setting, SlidingLaw};
+use slipmap::linear::margins::{self, Beyond, Case, MarginSearch, Radius, Setting, SlidingLaw};
 use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator};
 
 const NOTHING: Beyond = Beyond {
@@ -123,7 +123,7 @@ fn same(a: f64, b: f64) -> bool {
 #[test]
 fn nothing_beyond_the_letter_is_the_letters_own() {
     let mut chance = Chance(41);
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let (mut tried, mut with_decay, mut open) = (0, 0, 0);
     while tried < 3000 {
         let (velocity, load) = (tried % 3 != 1, tried % 3 != 0);
@@ -218,7 +218,7 @@ fn check(
 }
 
 /// How many of the limits of a setting are told, of six.
-fn check_setting(search: &mut Margins, setting: Setting, beyond: Beyond) -> u32 {
+fn check_setting(search: &mut MarginSearch, setting: Setting, beyond: Beyond) -> u32 {
     let Setting { groups, tau, .. } = setting;
     let Groups { b, a_v, a_n } = groups;
     let case = Case::beyond(setting, beyond);
@@ -246,7 +246,7 @@ fn check_setting(search: &mut Margins, setting: Setting, beyond: Beyond) -> u32 
 
 #[test]
 fn limits_are_those_of_exact_counts() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let mut told = 0;
     for (setting, beyond) in settings(19, 400, 0.0) {
         told += check_setting(&mut search, setting, beyond);
@@ -263,7 +263,7 @@ fn limits_are_those_of_exact_counts() {
 #[test]
 fn limits_without_damping_are_those_of_exact_counts() {
     let mut chance = Chance(53);
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let (mut tried, mut told) = (0, 0);
     while tried < 60 {
         let (a_v, a_n) = match tried % 3 {
@@ -327,7 +327,7 @@ fn scanned(f: &dyn Fn(f64) -> f64) -> Vec<f64> {
 /// phase margin is the least angle of N/M where its size is 1.
 #[test]
 fn gain_and_phase_are_those_of_a_scan_of_the_loop() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     for (setting, beyond) in settings(29, 100, 0.0)
         .into_iter()
         .chain(settings(31, 40, 0.05))
@@ -376,7 +376,7 @@ fn gain_and_phase_are_those_of_a_scan_of_the_loop() {
 /// The latency margin counts from no latency, with everything else as it is.
 #[test]
 fn latency_margins_with_a_required_decay_are_where_roots_come_in() {
-    let mut search = Margins::default();
+    let mut search = MarginSearch::default();
     let (mut finite, mut none) = (0, 0);
     for (setting, beyond) in settings(37, 60, 0.05) {
         let margin = search.latency(&Case::beyond(setting, beyond));

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 /// The value of an option: a number, some numbers or a switch.
-pub(in crate::critical) trait Value: Copy {
+pub(in crate::critical) trait OptionValue: Copy {
     /// The type of the bounds of its range.
     type Bound: PartialOrd;
 
@@ -14,7 +14,7 @@ pub(in crate::critical) trait Value: Copy {
     fn within(self, range: &RangeInclusive<Self::Bound>) -> bool;
 }
 
-impl Value for f64 {
+impl OptionValue for f64 {
     type Bound = Self;
 
     fn scaled(self, factor: f64, range: &RangeInclusive<Self>) -> Self {
@@ -29,7 +29,7 @@ impl Value for f64 {
 /// Counts are rounded up.
 macro_rules! count {
     ($kind:ty, $number:expr) => {
-        impl Value for $kind {
+        impl OptionValue for $kind {
             type Bound = Self;
 
             fn scaled(self, factor: f64, range: &RangeInclusive<Self>) -> Self {
@@ -48,7 +48,7 @@ count!(u32, f64::from);
 count!(u64, |count: u64| count as f64);
 count!(usize, |count: usize| count as f64);
 
-impl<const N: usize> Value for [f64; N] {
+impl<const N: usize> OptionValue for [f64; N] {
     type Bound = f64;
 
     fn scaled(self, factor: f64, range: &RangeInclusive<f64>) -> Self {
@@ -60,7 +60,7 @@ impl<const N: usize> Value for [f64; N] {
     }
 }
 
-impl Value for bool {
+impl OptionValue for bool {
     type Bound = Self;
 
     fn scaled(self, _: f64, _: &RangeInclusive<Self>) -> Self {
@@ -113,12 +113,12 @@ macro_rules! options {
 
         impl $name {
             /// The names of the options, in the order of the table.
-            pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
+            pub(crate) const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
 
             /// Multiplies the option of this name, or each of its numbers, by `factor`, within its
             /// range; counts are rounded up. False where that changes nothing.
-            pub fn scale(&mut self, name: &str, factor: f64) -> bool {
-                use $crate::critical::options::table::Value;
+            pub(crate) fn scale(&mut self, name: &str, factor: f64) -> bool {
+                use $crate::critical::options::table::OptionValue;
                 match name {
                     $(stringify!($field) => {
                         let before = self.$field;
@@ -132,7 +132,7 @@ macro_rules! options {
             /// Whether every option lies in its range.
             #[must_use]
             pub fn within_ranges(&self) -> bool {
-                use $crate::critical::options::table::Value;
+                use $crate::critical::options::table::OptionValue;
                 true $(&& self.$field.within(&($range)))+
             }
         }

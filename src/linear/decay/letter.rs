@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::characteristic::Jet;
 use crate::linear::curves::{Vertex, Window};
-use crate::linear::plane::{Band, Local, Plane, Value};
+use crate::linear::plane::{Band, CharacteristicValue, Local, Plane};
 use crate::model::Groups;
 use crate::model::elementary::{exp, power};
 use crate::model::groups::feedback;
@@ -85,9 +85,9 @@ impl Plane for LetterPlane<'_> {
         [false, true]
     }
 
-    fn at(&self, p: f64, tau: f64, lambda: Complex64) -> Value {
+    fn at(&self, p: f64, tau: f64, lambda: Complex64) -> CharacteristicValue {
         let (jet, rounding, unit) = self.jet(p, tau, lambda);
-        Value {
+        CharacteristicValue {
             value: jet.value,
             by_lambda: jet.first * unit,
             by_lambda_twice: jet.second * (unit * unit),

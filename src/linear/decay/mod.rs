@@ -92,7 +92,7 @@ pub fn trace(
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.
-pub fn trace_in(plane: &impl Plane, sigma: f64) -> Result<PlaneCurves, TooManyCurves> {
+pub(crate) fn trace_in(plane: &impl Plane, sigma: f64) -> Result<PlaneCurves, TooManyCurves> {
     let mut tracer = Tracer {
         found: Traced::default(),
         curves: PlaneCurves::default(),

@@ -142,7 +142,7 @@ impl System {
 
     /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
     #[must_use]
-    pub fn root_bound(&self, tau: f64, line: f64) -> f64 {
+    pub(crate) fn root_bound(&self, tau: f64, line: f64) -> f64 {
         match &self.composition {
             Composition::Late(feedback) => feedback.late_root_bound(tau, line),
             _ => self.bound_by_coefficients(tau, line),

@@ -24,7 +24,7 @@ impl DelayLine {
     /// finitely many roots.
     #[inline]
     #[must_use]
-    pub fn reason_at(&self, tau: f64) -> Option<Reason> {
+    pub(crate) fn reason_at(&self, tau: f64) -> Option<Reason> {
         let finite = |&reason: &Reason| tau > 0.0 || reason != Reason::Infinite;
         self.reason.filter(finite)
     }
@@ -69,7 +69,7 @@ impl DelayLine {
     /// The distance from `delay`, one of the delays of `crossing`, up to which delays are marginal.
     #[inline]
     #[must_use]
-    pub fn marginal_distance(
+    pub(crate) fn marginal_distance(
         &self,
         crossing: &Crossing,
         delay: f64,

@@ -10,7 +10,7 @@ use super::right_of::RootCounter;
 use super::system::System;
 use super::turning::RightOf;
 use crate::linear::curves::{Vertex, Window};
-use crate::linear::plane::{Band, Local, Plane, Value};
+use crate::linear::plane::{Band, CharacteristicValue, Local, Plane};
 use crate::model::stop::Stop;
 
 /// Step of the central differences in p and q, over the widths of the window.
@@ -18,7 +18,7 @@ const DIFFERENCE: f64 = 1e-6;
 
 /// A system at one point of a plane.
 #[derive(Debug, Clone, Copy)]
-pub struct Setting {
+pub struct SystemSetting {
     /// The system, dimensionless.
     pub system: System,
     /// The delay of the system, in the unit of time of the plane.
@@ -27,7 +27,7 @@ pub struct Setting {
     pub unit: f64,
 }
 
-impl Setting {
+impl SystemSetting {
     /// The delay as the system takes it.
     #[must_use]
     pub fn delay(&self) -> f64 {
@@ -38,7 +38,7 @@ impl Setting {
 /// A system over the window of a plane.
 pub struct SystemPlane<'a> {
     /// The setting at (p, q) inside the window; none where no setting belongs to that point.
-    setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
+    setting_at: &'a dyn Fn(f64, f64) -> Option<SystemSetting>,
     window: &'a Window,
     delays: [bool; 2],
     lines: bool,
@@ -49,7 +49,7 @@ pub struct SystemPlane<'a> {
 /// The counter of the last question: many questions are about one point, or one line.
 struct Counted {
     at: (f64, f64),
-    setting: Setting,
+    setting: SystemSetting,
     counter: RootCounter,
 }
 
@@ -57,7 +57,7 @@ impl<'a> SystemPlane<'a> {
     /// A plane without lines of delays; `delays` says of p and of q whether it is a delay.
     #[must_use]
     pub fn new(
-        setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
+        setting_at: &'a dyn Fn(f64, f64) -> Option<SystemSetting>,
         window: &'a Window,
         delays: [bool; 2],
     ) -> Self {
@@ -73,7 +73,7 @@ impl<'a> SystemPlane<'a> {
 
     /// This plane, in which nothing is counted any more once `stop` is set.
     #[must_use]
-    pub fn heeding(self, stop: &Stop) -> Self {
+    pub(crate) fn heeding(self, stop: &Stop) -> Self {
         let stop = stop.clone();
         Self { stop, ..self }
     }
@@ -81,7 +81,7 @@ impl<'a> SystemPlane<'a> {
     /// A plane where q is the delay τ and nothing else depends on q: each p is a line of delays.
     #[must_use]
     pub fn of_lines(
-        setting_at: &'a dyn Fn(f64, f64) -> Option<Setting>,
+        setting_at: &'a dyn Fn(f64, f64) -> Option<SystemSetting>,
         window: &'a Window,
     ) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl<'a> SystemPlane<'a> {
 
     /// Whether each p is a line of delays.
     #[must_use]
-    pub fn has_lines(&self) -> bool {
+    pub(crate) fn has_lines(&self) -> bool {
         self.lines
     }
 
@@ -107,11 +107,11 @@ impl<'a> SystemPlane<'a> {
 
     /// The setting at a point, or at the nearest one of the window; along a line beyond its ends,
     /// too.
-    pub fn setting(&self, p: f64, q: f64) -> Option<Setting> {
+    pub fn setting(&self, p: f64, q: f64) -> Option<SystemSetting> {
         let (p, inside) = self.clamped(p, q);
         let setting = (self.setting_at)(p, inside)?;
         Some(match self.lines {
-            true => Setting {
+            true => SystemSetting {
                 tau: q.max(0.0),
                 ..setting
             },
@@ -120,7 +120,12 @@ impl<'a> SystemPlane<'a> {
     }
 
     /// What `of` says of the roots at (p, q); none once the plane is stopped.
-    fn counted<T>(&self, p: f64, q: f64, of: impl FnOnce(&RootCounter, Setting) -> T) -> Option<T> {
+    fn counted<T>(
+        &self,
+        p: f64,
+        q: f64,
+        of: impl FnOnce(&RootCounter, SystemSetting) -> T,
+    ) -> Option<T> {
         if self.stop.is_set() {
             return None;
         }
@@ -150,7 +155,7 @@ impl<'a> SystemPlane<'a> {
     /// The number of roots right of the line, where that is known.
     #[must_use]
     pub fn count(&self, p: f64, q: f64, sigma: f64, beside: f64) -> RightOf {
-        let right_of = |counter: &RootCounter, setting: Setting| {
+        let right_of = |counter: &RootCounter, setting: SystemSetting| {
             counter.right_of(setting.delay(), -sigma * setting.unit + beside)
         };
         self.counted(p, q, right_of).unwrap_or(RightOf::Undecided)
@@ -209,10 +214,10 @@ impl Plane for SystemPlane<'_> {
         self.delays
     }
 
-    fn at(&self, p: f64, q: f64, lambda: Complex64) -> Value {
+    fn at(&self, p: f64, q: f64, lambda: Complex64) -> CharacteristicValue {
         let Some(setting) = self.setting(p, q) else {
             let nothing = Complex64::new(f64::NAN, f64::NAN);
-            return Value {
+            return CharacteristicValue {
                 value: nothing,
                 by_lambda: nothing,
                 by_lambda_twice: nothing,
@@ -222,7 +227,7 @@ impl Plane for SystemPlane<'_> {
         let (unit, tau) = (setting.unit, setting.delay());
         let lambda = lambda * unit;
         let jet = setting.system.jet(tau, lambda);
-        Value {
+        CharacteristicValue {
             value: jet.value,
             by_lambda: jet.first * unit,
             by_lambda_twice: jet.second * (unit * unit),
@@ -250,7 +255,7 @@ impl Plane for SystemPlane<'_> {
     }
 
     fn frequencies(&self, p: f64, q: f64, sigma: f64) -> Vec<f64> {
-        let frequencies = |counter: &RootCounter, setting: Setting| {
+        let frequencies = |counter: &RootCounter, setting: SystemSetting| {
             let unit = setting.unit;
             let all = counter.frequencies(setting.delay(), -sigma * unit);
             all.into_iter().map(|(omega, _)| omega / unit).collect()
@@ -263,7 +268,7 @@ impl Plane for SystemPlane<'_> {
     /// ω_j, half the degrees, and one each for ν₀ and rounding. The sum is the measure of {|P| <
     /// κ|Q|}. That set, and with it the bound, only grows with τ where P and Q stay as they are.
     fn band(&self, p: f64, q: f64, sigma: f64) -> Band {
-        let band = |counter: &RootCounter, setting: Setting| {
+        let band = |counter: &RootCounter, setting: SystemSetting| {
             let all = counter.frequencies(setting.delay(), -sigma * setting.unit);
             let below: f64 = all.iter().map(|&(omega, s)| omega * f64::from(s)).sum();
             let degrees = 2.0 * counter.system().p.degree() as f64;

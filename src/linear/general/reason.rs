@@ -24,7 +24,7 @@ pub enum Reason {
 
 impl Reason {
     /// All reasons, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::RootAtOrigin,
         Self::RootOnAxis,
         Self::Infinite,

@@ -162,7 +162,7 @@ impl RootCounter {
     /// This counter with the work of a cell bounded where there is latency, by a number of steps:
     /// once these are taken every number of roots is undecided, until [`RootCounter::begin`].
     #[must_use]
-    pub fn bounded(self) -> Self {
+    pub(crate) fn bounded(self) -> Self {
         self.allowing(MOST_STEPS_OF_A_CELL)
     }
 
@@ -174,13 +174,13 @@ impl RootCounter {
     }
 
     /// Begins another cell, see [`RootCounter::bounded`].
-    pub fn begin(&self) {
+    pub(crate) fn begin(&self) {
         self.budget.renew();
     }
 
     /// Whether the work of this cell has come to its bound.
     #[must_use]
-    pub fn is_spent(&self) -> bool {
+    pub(crate) fn is_spent(&self) -> bool {
         self.budget.is_spent()
     }
 
@@ -191,7 +191,7 @@ impl RootCounter {
 
     /// This counter, to which every number of roots is undecided once `stop` is set.
     #[must_use]
-    pub fn heeding(self, stop: &Stop) -> Self {
+    pub(crate) fn heeding(self, stop: &Stop) -> Self {
         let stop = stop.clone();
         Self { stop, ..self }
     }
@@ -199,7 +199,7 @@ impl RootCounter {
     /// The counter of the same system with times in units of `unit`, a power of two; with the same
     /// stop, and as bounded as this one.
     #[must_use]
-    pub fn in_unit(&self, unit: f64) -> Self {
+    pub(crate) fn in_unit(&self, unit: f64) -> Self {
         Self {
             stop: self.stop.clone(),
             budget: self.budget.clone(),

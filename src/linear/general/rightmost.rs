@@ -43,7 +43,7 @@ pub struct Spectrum {
 /// A line right of the one at which the roots of `system` accumulate at the delay `tau`, as near as
 /// roots are told from it; none where they accumulate nowhere.
 #[must_use]
-pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
+pub(crate) fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
     let essential = system.essential_abscissa(tau);
     let beside = essential + BESIDE * essential.abs().max(1.0 / tau);
     beside.is_finite().then_some(beside)
@@ -52,7 +52,7 @@ pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
 /// The line of [`beside_accumulation`], where no root lies right of it; none where one does, or
 /// where that is not known.
 #[must_use]
-pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f64> {
+pub(crate) fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f64> {
     let beside = beside_accumulation(counter.system(), tau)?;
     counter.begin();
     if counter.system().latency() > 0.0 {
@@ -70,7 +70,7 @@ pub fn nothing_beyond_accumulation(counter: &RootCounter, tau: f64) -> Option<f6
 /// The margin of an abscissa in units in which it is `by` times as large: relative to the larger of
 /// 1 and of its size.
 #[must_use]
-pub fn scaled_margin(margin: f64, abscissa: f64, by: f64) -> f64 {
+pub(crate) fn scaled_margin(margin: f64, abscissa: f64, by: f64) -> f64 {
     if by == 1.0 {
         return margin;
     }

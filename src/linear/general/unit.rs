@@ -82,7 +82,7 @@ impl System {
     /// This system with its delay and latency in units of `unit`, a power of two: a root λ of
     /// this one is a root λ·`unit` there.
     #[must_use]
-    pub fn in_unit(&self, unit: f64) -> Self {
+    pub(crate) fn in_unit(&self, unit: f64) -> Self {
         let n = match self.feedback_form() {
             Some(feedback) => feedback.open.degree(),
             None => self.p.degree().max(self.q.degree()),

@@ -27,7 +27,7 @@ const NEARLY_REAL: f64 = 1e-14;
 
 /// A disc of the complex plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Disc {
+pub(crate) struct Disc {
     /// The centre, an approximate zero.
     pub centre: Complex64,
     /// The radius; infinite where nothing is known.
@@ -37,7 +37,7 @@ pub struct Disc {
 /// The zeros of a real polynomial of known degree: as many discs as its degree, their centres
 /// symmetric about the real axis.
 #[derive(Debug, Clone, Copy)]
-pub struct Zeros {
+pub(crate) struct Zeros {
     discs: [Disc; MOST_DEGREE],
     /// The number of the connected set to which each disc belongs.
     sets: [u8; MOST_DEGREE],
@@ -52,7 +52,7 @@ const NOWHERE: Disc = Disc {
 impl Zeros {
     /// The zeros of `of`, whose highest coefficient is certain to differ from 0.
     #[must_use]
-    pub fn of(of: &Polynomial) -> Self {
+    pub(crate) fn of(of: &Polynomial) -> Self {
         let mut at = [Complex64::ZERO; MOST_DEGREE];
         let at = &mut at[..of.degree()];
         Self::approximate(of, at);
@@ -99,12 +99,12 @@ impl Zeros {
     /// The discs.
     #[inline]
     #[must_use]
-    pub fn discs(&self) -> &[Disc] {
+    pub(crate) fn discs(&self) -> &[Disc] {
         &self.discs[..self.count]
     }
 
     /// The connected sets, as lists of discs with a mark for those that belong to the set.
-    pub fn sets(&self) -> impl Iterator<Item = Set<'_>> {
+    pub(crate) fn sets(&self) -> impl Iterator<Item = Set<'_>> {
         (0..self.count)
             .filter(|&i| usize::from(self.sets[i]) == i)
             .map(|i| Set {
@@ -139,14 +139,14 @@ impl Zeros {
 
 /// A connected set of discs: it holds as many zeros as it has discs.
 #[derive(Debug, Clone, Copy)]
-pub struct Set<'z> {
+pub(crate) struct Set<'z> {
     zeros: &'z Zeros,
     number: u8,
 }
 
 impl Set<'_> {
     /// The discs of the set.
-    pub fn discs(&self) -> impl Iterator<Item = Disc> + '_ {
+    pub(crate) fn discs(&self) -> impl Iterator<Item = Disc> + '_ {
         let number = self.number;
         self.zeros
             .discs()
@@ -158,14 +158,14 @@ impl Set<'_> {
 
     /// How many zeros the set holds.
     #[must_use]
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.discs().count()
     }
 
     /// The part of the real axis that the set covers, the stretch between two of its discs
     /// included; none where it covers none.
     #[must_use]
-    pub fn on_real_axis(&self) -> Option<(f64, f64)> {
+    pub(crate) fn on_real_axis(&self) -> Option<(f64, f64)> {
         let mut covered: Option<(f64, f64)> = None;
         for disc in self.discs() {
             let high = disc.centre.im.abs();
@@ -186,7 +186,7 @@ impl Set<'_> {
 
     /// The interval of real parts that the set covers.
     #[must_use]
-    pub fn real_parts(&self) -> (f64, f64) {
+    pub(crate) fn real_parts(&self) -> (f64, f64) {
         let ends = |disc: Disc| (disc.centre.re - disc.radius, disc.centre.re + disc.radius);
         self.discs().map(ends).fold(
             (f64::INFINITY, f64::NEG_INFINITY),
@@ -196,7 +196,7 @@ impl Set<'_> {
 
     /// The middle of the centres of the discs.
     #[must_use]
-    pub fn middle(&self) -> Complex64 {
+    pub(crate) fn middle(&self) -> Complex64 {
         let sum: Complex64 = self.discs().map(|d| d.centre).sum();
         sum / self.count() as f64
     }

@@ -11,7 +11,7 @@ pub struct Limits {
 
 impl Limits {
     /// Limits that are not known.
-    pub const UNDECIDED: Self = Self {
+    pub(crate) const UNDECIDED: Self = Self {
         lower: f64::NAN,
         upper: f64::NAN,
     };

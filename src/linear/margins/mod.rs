@@ -77,7 +77,7 @@ pub use self::surroundings::Changes;
 ///
 /// All answers are for settings that are stable; NaN where a search was given up.
 #[derive(Debug, Default)]
-pub struct Margins {
+pub struct MarginSearch {
     intervals: Intervals,
     changes: Vec<f64>,
 }
@@ -118,7 +118,7 @@ impl<L: OnLine> Case<L> {
     }
 }
 
-impl Margins {
+impl MarginSearch {
     /// The gain margin: the factors of both gains at which stability is lost. 0 below where any
     /// smaller gain is stable too.
     pub fn gain(&mut self, of: &impl AsCase) -> Limits {

@@ -85,7 +85,7 @@ impl Case {
 
 impl<L: OnLine> Case<L> {
     /// Once `stop` is set, margins are told soon, and mean nothing.
-    pub fn heed(&mut self, stop: &Stop) {
+    pub(crate) fn heed(&mut self, stop: &Stop) {
         self.stop = stop.clone();
     }
 

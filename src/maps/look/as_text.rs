@@ -13,7 +13,7 @@ use crate::sweep::Plan;
 
 /// The requests about a cell, as text; none for those that do not apply to it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct CellTexts {
+pub(crate) struct CellTexts {
     /// A point of continuous sliding.
     pub point: Option<String>,
     /// A problem of the critical velocity.
@@ -28,7 +28,7 @@ pub struct CellTexts {
 impl CellTexts {
     /// The texts of the cell at `index`.
     #[must_use]
-    pub fn of(plan: &Plan, index: &[usize]) -> Self {
+    pub(crate) fn of(plan: &Plan, index: &[usize]) -> Self {
         let spec = &plan.spec;
         let setting = plan.setting(index);
         if spec.limit {

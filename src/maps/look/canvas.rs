@@ -7,13 +7,13 @@ use super::pixels::Pixels;
 
 /// The pixel hides cells with different values, or flagged cells although the cell that it shows
 /// has no flag.
-pub const SEVERAL: u8 = 1;
+pub(crate) const SEVERAL: u8 = 1;
 /// The cell of the pixel is not read yet.
-pub const UNREAD: u8 = 2;
+pub(crate) const UNREAD: u8 = 2;
 /// The cell of the pixel is not computed yet.
-pub const NOT_COMPUTED: u8 = 4;
+pub(crate) const NOT_COMPUTED: u8 = 4;
 /// The pixel lies beyond the axes and shows no cell.
-pub const BEYOND: u8 = 8;
+pub(crate) const BEYOND: u8 = 8;
 /// The pixel has the value of a hidden cell for now, because its own cell is not read yet.
 const HIDDEN_SEEN: u8 = 128;
 

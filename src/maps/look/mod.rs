@@ -20,7 +20,7 @@
 //! - `view`: a window that is being read, chunk by chunk
 //! - `window`: the request for a window, and the answer
 
-pub mod as_text;
+pub(crate) mod as_text;
 mod canvas;
 mod cells;
 mod jobs;
@@ -39,15 +39,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-pub use canvas::{BEYOND, NOT_COMPUTED, SEVERAL, UNREAD};
-pub use pixels::{Scale, Stretch, finite};
-pub use source::Facts;
-pub use window::{Asked, Numbers, Shot, Shown};
+pub(crate) use pixels::{Scale, Stretch, finite};
+pub(crate) use source::Facts;
+pub(crate) use window::{Asked, Numbers, Shot, Shown};
 
 use jobs::Job;
 use reading::Reading;
 use source::{Cells, Source, Still};
-pub use view::View;
+pub(crate) use view::View;
 use view::locked;
 
 use crate::store::StoreError;
@@ -64,7 +63,7 @@ const MOST_THREADS: usize = 4;
 
 /// A map that is displayed.
 #[derive(Debug)]
-pub struct Look {
+pub(crate) struct Look {
     facts: Arc<Facts>,
     reading: Arc<Reading>,
     desk: Arc<Desk>,
@@ -83,14 +82,14 @@ struct Desk {
 
 /// The map is no longer the one that was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct OtherMap;
+pub(crate) struct OtherMap;
 
 impl Look {
     /// Opens the map at `path`, or the tiles beside it.
     ///
     /// # Errors
     /// When there is none, or it is damaged.
-    pub fn open(path: &Path) -> Result<Self, StoreError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, StoreError> {
         let (source, facts) = Source::open(path)?;
         let facts = Arc::new(facts);
         let reading = Arc::new(Reading::new(source, Arc::clone(&facts)));
@@ -114,7 +113,7 @@ impl Look {
 
     /// The facts about the map that do not change.
     #[must_use]
-    pub fn facts(&self) -> &Facts {
+    pub(crate) fn facts(&self) -> &Facts {
         &self.facts
     }
 
@@ -123,7 +122,7 @@ impl Look {
     ///
     /// # Errors
     /// See above.
-    pub fn refresh(&self) -> Result<(), OtherMap> {
+    pub(crate) fn refresh(&self) -> Result<(), OtherMap> {
         let mut source = locked(&self.reading.source);
         let still = source.look();
         self.reading
@@ -142,13 +141,13 @@ impl Look {
 
     /// A number that changes when cells are added, and the number of computed cells.
     #[must_use]
-    pub fn version(&self) -> (u64, u64) {
+    pub(crate) fn version(&self) -> (u64, u64) {
         let source = locked(&self.reading.source);
         (source.version, source.cells_done)
     }
 
     /// The description of the map, from its file or its tiles.
-    pub fn told<T>(
+    pub(crate) fn told<T>(
         &self,
         of_file: impl FnOnce(&crate::store::MapFile) -> T,
         of_tiles: impl FnOnce(&crate::store::tiles::GrowingMap) -> T,
@@ -164,7 +163,7 @@ impl Look {
     ///
     /// # Errors
     /// A description of the fault when there is no such window.
-    pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Arc<View>, String> {
+    pub(crate) fn window(&self, asked: &Asked, patience: Duration) -> Result<Arc<View>, String> {
         let until = Instant::now() + patience;
         let view = self.view(asked, until + UNTIL_NEXT)?;
         let mut views = self.desk.views();
@@ -212,7 +211,7 @@ impl Look {
     ///
     /// # Errors
     /// A description of the fault when it cannot be read.
-    pub fn cell(&self, column: usize, index: &[usize]) -> Result<u64, String> {
+    pub(crate) fn cell(&self, column: usize, index: &[usize]) -> Result<u64, String> {
         self.reading.cell(column, index)
     }
 
@@ -220,7 +219,7 @@ impl Look {
     ///
     /// # Errors
     /// When the map is damaged.
-    pub fn curves(&self, index: &[usize]) -> Result<Vec<MapCurve>, StoreError> {
+    pub(crate) fn curves(&self, index: &[usize]) -> Result<Vec<MapCurve>, StoreError> {
         match &mut locked(&self.reading.source).cells {
             Cells::Growing(growing) => growing.curves(index),
             Cells::File(columns) => {
@@ -238,7 +237,7 @@ impl Look {
 
     /// The axes of the planes of curves, parameter and delay; none without curves.
     #[must_use]
-    pub fn curves_plane(&self) -> Option<(usize, usize)> {
+    pub(crate) fn curves_plane(&self) -> Option<(usize, usize)> {
         self.told(crate::store::MapFile::boundary_plane, |growing| {
             growing.plan().boundary_plane
         })

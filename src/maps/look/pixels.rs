@@ -6,7 +6,7 @@ use crate::model::elementary::ln;
 
 /// The spacing of pixels over an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
+pub(crate) enum Scale {
     /// Evenly.
     #[default]
     Linear,
@@ -16,7 +16,7 @@ pub enum Scale {
 
 /// A stretch of an axis that is divided into pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
+pub(crate) struct Stretch {
     /// The value at the outer edge of the first pixel; none: the axis' first value.
     pub from: Option<f64>,
     /// The value at the outer edge of the last pixel; none: the axis' last value.
@@ -64,7 +64,7 @@ impl Coordinate {
 ///
 /// # Errors
 /// A description of the fault when one of them is not finite.
-pub fn finite(ends: impl IntoIterator<Item = Option<f64>>) -> Result<(), &'static str> {
+pub(crate) fn finite(ends: impl IntoIterator<Item = Option<f64>>) -> Result<(), &'static str> {
     match ends.into_iter().flatten().all(f64::is_finite) {
         true => Ok(()),
         false => Err("the ends of a window are finite numbers"),

@@ -22,7 +22,7 @@ const BETWEEN_REFRESHES: Duration = Duration::from_secs(2);
 
 /// The facts about a map that do not change while it is displayed.
 #[derive(Debug, Clone)]
-pub struct Facts {
+pub(crate) struct Facts {
     /// Its axes.
     pub axes: Vec<MapAxis>,
     /// Its fields.
@@ -34,15 +34,9 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Length of each axis.
-    #[must_use]
-    pub fn shape(&self) -> Vec<usize> {
-        self.axes.iter().map(|axis| axis.values.len()).collect()
-    }
-
     /// Number of cells.
     #[must_use]
-    pub fn cells(&self) -> u64 {
+    pub(crate) fn cells(&self) -> u64 {
         self.axes
             .iter()
             .map(|axis| axis.values.len() as u64)
@@ -51,19 +45,19 @@ impl Facts {
 
     /// The column of a field.
     #[must_use]
-    pub fn column(&self, field: Field) -> Option<usize> {
+    pub(crate) fn column(&self, field: Field) -> Option<usize> {
         self.fields.iter().position(|held| *held == field)
     }
 
     /// The column of the status.
     #[must_use]
-    pub fn status(&self) -> usize {
+    pub(crate) fn status(&self) -> usize {
         self.fields.len()
     }
 
     /// The bits of cells of a column that are not computed yet.
     #[must_use]
-    pub fn fill(&self, column: usize) -> u64 {
+    pub(crate) fn fill(&self, column: usize) -> u64 {
         match self.fields.get(column).map(|field| field.storage()) {
             Some(Storage::Count) => N_UNSTABLE_FILL.into(),
             Some(Storage::Kind | Storage::Few) => FEW_FILL.into(),

@@ -42,7 +42,7 @@ impl AnyCanvas {
 
 /// A window that is being read.
 #[derive(Debug)]
-pub struct View {
+pub(crate) struct View {
     pub(super) asked: Asked,
     pub(super) version: u64,
     /// Increases from view to view.
@@ -201,7 +201,7 @@ impl View {
 
     /// The window, as far as it is read.
     #[must_use]
-    pub fn shot(&self, facts: &Facts) -> Shot {
+    pub(crate) fn shot(&self, facts: &Facts) -> Shot {
         // This is read before the pixels, so that a window reported as complete is complete.
         let done = self.done.load(Ordering::Acquire);
         let shown = |axis: usize, pixels: &Pixels| {

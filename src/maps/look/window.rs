@@ -5,7 +5,7 @@ use crate::setting::Field;
 
 /// A window on a map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub(crate) struct Asked {
     /// The field to show.
     pub field: Field,
     /// The axis from left to right.
@@ -22,7 +22,7 @@ pub struct Asked {
 
 /// Pixels along an axis: the index of the cell that each shows, and its value there.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Shown {
+pub(crate) struct Shown {
     /// Indices.
     pub index: Vec<u32>,
     /// Values.
@@ -31,7 +31,7 @@ pub struct Shown {
 
 /// The numbers of a field, pixel by pixel.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Numbers {
+pub(crate) enum Numbers {
     /// Kinds and small counts.
     U8(Vec<u8>),
     /// Counts.
@@ -42,7 +42,7 @@ pub enum Numbers {
 
 /// The contents of a window, as far as they are read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shot {
+pub(crate) struct Shot {
     /// Whether everything is read.
     pub complete: bool,
     /// The share that is read, 0 to 1.

@@ -24,12 +24,12 @@
 //! - `expression`, `part`: read expressions; `tape`: evaluates them; `bounded`: numbers with bounds
 //!   on their error
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
-//! - [`parameter`]: a parameter of a system
+//! - `parameter`: a parameter of a system
 
 mod bounded;
 mod expression;
 mod file;
-pub mod parameter;
+pub(crate) mod parameter;
 mod part;
 pub mod shipped;
 mod tape;
@@ -113,7 +113,7 @@ pub enum SpeedUnit {
 
 impl SpeedUnit {
     /// The units of speeds, by name.
-    pub const ALL: [Self; 3] = [
+    pub(crate) const ALL: [Self; 3] = [
         Self::RevolutionsPerMinute,
         Self::Hertz,
         Self::RadiansPerSecond,
@@ -131,7 +131,7 @@ impl SpeedUnit {
 
     /// The speed at which one revolution takes `period` > 0.
     #[must_use]
-    pub fn speed(self, period: f64) -> f64 {
+    pub(crate) fn speed(self, period: f64) -> f64 {
         let turn = match self {
             Self::RevolutionsPerMinute => 60.0,
             Self::Hertz => 1.0,
@@ -174,19 +174,19 @@ pub struct Undefined {
 impl SystemModel {
     /// Whether the system is given as B and A; memory and latency are then parameters.
     #[must_use]
-    pub fn is_feedback(&self) -> bool {
+    pub(crate) fn is_feedback(&self) -> bool {
         matches!(self.form, Form::Feedback(_))
     }
 
     /// Whether the polynomials depend on the delay; there is then no line of delays.
     #[must_use]
-    pub fn depends_on_delay(&self) -> bool {
+    pub(crate) fn depends_on_delay(&self) -> bool {
         let tau = self.parameters.len();
         self.polynomials().any(|(_, of)| of.tape.uses(tau))
     }
 
     /// The polynomials as written, with their names.
-    pub fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
+    pub(crate) fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.polynomials().map(|(name, of)| (name, &*of.text))
     }
 

@@ -47,7 +47,7 @@ impl OwnParameter {
     ///
     /// # Errors
     /// Names the parameter, the value and the allowed range.
-    pub fn check(&self, value: f64) -> Result<f64, String> {
+    pub(crate) fn check(&self, value: f64) -> Result<f64, String> {
         if (self.minimum..=self.maximum).contains(&value) {
             return Ok(value);
         }

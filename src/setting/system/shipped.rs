@@ -4,7 +4,7 @@ use super::SystemModel;
 use crate::text::nearest::did_you_mean;
 
 /// All names, with their files.
-pub const SHIPPED: [(&str, &str); 8] = [
+pub(crate) const SHIPPED: [(&str, &str); 8] = [
     (
         "letter",
         include_str!("../../../sweeps/systems/letter.toml"),
@@ -35,7 +35,7 @@ pub const SHIPPED: [(&str, &str); 8] = [
 
 /// The file of the system with this name.
 #[must_use]
-pub fn text_of(name: &str) -> Option<&'static str> {
+pub(crate) fn text_of(name: &str) -> Option<&'static str> {
     let found = SHIPPED.into_iter().find(|(known, _)| *known == name);
     found.map(|(_, text)| text)
 }
@@ -54,7 +54,7 @@ pub fn names() -> String {
 
 /// A message about an unknown name: what may have been meant, and which names exist.
 #[must_use]
-pub fn meant(name: &str) -> String {
+pub(crate) fn meant(name: &str) -> String {
     let meant = did_you_mean(name, SHIPPED.map(|(known, _)| known));
     format!("{meant}known by name: {}; others by their file", names())
 }

@@ -40,7 +40,7 @@ impl SpeedAxis {
 impl SystemModel {
     /// The title with the polynomials, for people.
     #[must_use]
-    pub fn in_one_line(&self) -> String {
+    pub(crate) fn in_one_line(&self) -> String {
         let title = Some(&self.title).filter(|title| !title.is_empty());
         let texts = self.expressions().map(|(name, text)| {
             let words: Vec<&str> = text.split_whitespace().collect();
@@ -65,7 +65,7 @@ impl SystemModel {
 
     /// The text of a system file for the same system.
     #[must_use]
-    pub fn to_toml(&self) -> String {
+    pub(crate) fn to_toml(&self) -> String {
         let pairs = self.pairs().into_iter();
         let mut text: String = pairs
             .map(|(key, value)| format!("{key} = {value}\n"))
@@ -81,7 +81,7 @@ impl SystemModel {
 
     /// The system on one line, as the value of a key.
     #[must_use]
-    pub fn to_inline_table(&self) -> String {
+    pub(crate) fn to_inline_table(&self) -> String {
         let mut pairs = self.pairs();
         let own = self.parameters.iter();
         let own: Vec<String> = own

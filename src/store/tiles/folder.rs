@@ -18,7 +18,7 @@ use crate::sweep::engine::Sink;
 use crate::sweep::plan::pieces::{Piece, Pieces};
 
 /// The usual time between two files.
-pub const BETWEEN_FILES: Duration = Duration::from_secs(2);
+pub(crate) const BETWEEN_FILES: Duration = Duration::from_secs(2);
 /// The most bytes that wait before a file is written.
 const BYTES_OF_A_FILE: usize = 16 << 20;
 
@@ -83,7 +83,7 @@ impl TileFolder {
     }
 
     /// Sets the time between two files, instead of two seconds.
-    pub fn save_every(&mut self, time: Duration) {
+    pub(crate) fn save_every(&mut self, time: Duration) {
         self.save_every = time;
     }
 
@@ -117,7 +117,7 @@ impl TileFolder {
     ///
     /// # Errors
     /// When the system refuses, for instance because something else is in the folder.
-    pub fn remove(self) -> Result<(), StoreError> {
+    pub(crate) fn remove(self) -> Result<(), StoreError> {
         clear_claimed(self.reader.path())
     }
 

@@ -72,7 +72,7 @@ pub fn write(out: &mut impl Write, layout: &Digest, records: &[Record]) -> io::R
 
 /// The index of a file with these `records`.
 #[must_use]
-pub fn entries(records: &[Record]) -> Vec<Entry> {
+pub(crate) fn entries(records: &[Record]) -> Vec<Entry> {
     let mut end = HEAD + records.len() * ENTRY + size_of::<Digest>();
     let entry = |record: &Record| {
         let start = end;

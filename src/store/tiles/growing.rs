@@ -72,7 +72,7 @@ impl GrowingMap {
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn refresh(&mut self, map: &Path) -> Result<bool, StoreError> {
+    pub(crate) fn refresh(&mut self, map: &Path) -> Result<bool, StoreError> {
         let present = shards::present(map)?;
         let folders = present.iter().map(|(_, path)| path);
         let stamps = self.folders.iter().map(|folder| stamp(folder));
@@ -91,14 +91,8 @@ impl GrowingMap {
 
     /// The manifest of the tiles.
     #[must_use]
-    pub fn manifest(&self) -> &Manifest {
+    pub(crate) fn manifest(&self) -> &Manifest {
         &self.manifest
-    }
-
-    /// Whether a run works on one of the shards at this moment.
-    #[must_use]
-    pub fn is_running(&self) -> bool {
-        self.folders.iter().any(|folder| shards::is_running(folder))
     }
 
     /// The number of finished pieces, and the number of cells in them.

@@ -20,10 +20,10 @@ use crate::text::SpecError;
 use crate::text::in_hexadecimal;
 
 /// Name of the file.
-pub const NAME: &str = "manifest.json";
+pub(crate) const NAME: &str = "manifest.json";
 
 /// Version of the layout of tile files and their folder.
-pub const TILES_FORMAT_VERSION: u32 = 2;
+pub(crate) const TILES_FORMAT_VERSION: u32 = 2;
 
 /// The most bytes of a manifest.
 const MOST_BYTES: u64 = 64 << 20;
@@ -43,9 +43,9 @@ fn checksum(text: &str) -> String {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// [`TILES_FORMAT_VERSION`].
+    /// `TILES_FORMAT_VERSION`.
     pub tiles_format_version: u32,
-    /// [`schema::FORMAT_VERSION`].
+    /// `schema::FORMAT_VERSION`.
     pub map_format_version: i32,
     /// Version of the program.
     pub program_version: String,

@@ -1,7 +1,7 @@
 //! Finished pieces of a sweep on disk, until the map is put together.
 //!
 //! Beside a map `MAP.h5` stands a folder `MAP.h5.tiles`. It has a folder `I-of-N` for each shard,
-//! or `1-of-1` for the whole sweep, with a [`manifest`], a lock, and tile files ([`mod@format`]).
+//! or `1-of-1` for the whole sweep, with a `manifest`, a lock, and tile files ([`mod@format`]).
 //! Each tile file is closed, synced and renamed before the next one is begun, so it outlasts any
 //! end of the run. A file holds the pieces of about two seconds.
 //!
@@ -13,14 +13,14 @@
 //! - `shards`: the folders of all shards of a map
 //! - `survey`: the contents of all shards, read without claiming them
 
-pub mod folder;
+pub(crate) mod folder;
 pub mod format;
-pub mod growing;
-pub mod manifest;
-pub mod reader;
+pub(crate) mod growing;
+pub(crate) mod manifest;
+pub(crate) mod reader;
 pub mod record;
 pub mod shards;
-pub mod survey;
+pub(crate) mod survey;
 
 pub use folder::TileFolder;
 pub use growing::GrowingMap;

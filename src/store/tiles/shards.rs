@@ -46,7 +46,7 @@ fn marker(map: &Path) -> PathBuf {
 ///
 /// # Errors
 /// When the system refuses.
-pub fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
+pub(crate) fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
     let path = marker(map);
     if path.exists() {
         return Ok(());
@@ -62,7 +62,7 @@ pub fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
 /// # Errors
 /// As [`clear`], and those of `is_complete`. The shards are then neither removed nor taken for half
 /// a map.
-pub fn settle(
+pub(crate) fn settle(
     map: &Path,
     is_complete: impl FnOnce(&str) -> Result<bool, StoreError>,
 ) -> Result<bool, StoreError> {
@@ -153,7 +153,7 @@ fn planned(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
 
 /// Whether tiles of any shard that belong to `asked` stand beside `map`.
 #[must_use]
-pub fn hold(map: &Path, asked: &Manifest) -> bool {
+pub(crate) fn hold(map: &Path, asked: &Manifest) -> bool {
     let holds = |folder: &Path| match manifest(folder) {
         Ok(found) => found.plan_hash == asked.plan_hash,
         Err(_) => folder::belongs(folder, &asked.layout()).is_ok_and(|b| b == Belongs::Here),
@@ -186,7 +186,7 @@ pub(super) fn expected_in(
 
 /// Whether a run works on a shard at this moment.
 #[must_use]
-pub fn is_running(folder: &Path) -> bool {
+pub(crate) fn is_running(folder: &Path) -> bool {
     folder::is_claimed(folder)
 }
 
@@ -194,7 +194,7 @@ pub fn is_running(folder: &Path) -> bool {
 ///
 /// # Errors
 /// When there is none, or it is damaged.
-pub fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
+pub(crate) fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
     Manifest::read(&folder.join(manifest::NAME))
 }
 
@@ -203,7 +203,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
 /// # Errors
 /// When a run works on one of them, something that is not slipmap's is there, or the system
 /// refuses.
-pub fn clear(map: &Path) -> Result<(), StoreError> {
+pub(crate) fn clear(map: &Path) -> Result<(), StoreError> {
     let shards = all(map)?;
     if let Some((_, path)) = shards.iter().find(|(_, path)| is_running(path)) {
         return Err(StoreError::Locked { path: path.clone() });
@@ -218,7 +218,7 @@ pub fn clear(map: &Path) -> Result<(), StoreError> {
 ///
 /// # Errors
 /// As [`clear`].
-pub fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
+pub(crate) fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
     let path = folder_of(map, shard);
     if path.exists() {
         folder::clear(&path)
@@ -231,7 +231,7 @@ pub fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
 ///
 /// # Errors
 /// When something else stands there or in it, or the system refuses.
-pub fn make_root(map: &Path) -> Result<(), StoreError> {
+pub(crate) fn make_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     folder::make(&root)?;
     refuse_link(&root)?;
@@ -246,7 +246,7 @@ pub fn make_root(map: &Path) -> Result<(), StoreError> {
 ///
 /// # Errors
 /// When it is not empty, or the system refuses.
-pub fn remove_root(map: &Path) -> Result<(), StoreError> {
+pub(crate) fn remove_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     if !root.exists() {
         return Ok(());
@@ -302,7 +302,7 @@ impl Shards {
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn remove(self) -> Result<(), StoreError> {
+    pub(crate) fn remove(self) -> Result<(), StoreError> {
         self.folders.into_iter().try_for_each(TileFolder::remove)
     }
 }

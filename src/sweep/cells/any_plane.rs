@@ -3,7 +3,7 @@
 use super::boundaries::{DegreeCurves, joined, jumps, split};
 use crate::linear::curves::{PlaneCurves, Window};
 use crate::linear::general::curves::trace;
-use crate::linear::general::{Setting as SystemSetting, SystemPlane};
+use crate::linear::general::{SystemPlane, SystemSetting};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::parameter::Parameter;

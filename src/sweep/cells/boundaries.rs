@@ -41,7 +41,7 @@ pub struct DegreeCurves {
 
 /// The place of the `number`-th plane of curves, as indices along every axis; 0 along its own two.
 #[must_use]
-pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
+pub(crate) fn plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.boundary_plane, number)
 }
 
@@ -60,7 +60,11 @@ pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: 
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
-pub fn trace_plane(plan: &Plan, index: &[usize], stop: &Stop) -> Result<BoundaryPlane, ModelError> {
+pub(crate) fn trace_plane(
+    plan: &Plan,
+    index: &[usize],
+    stop: &Stop,
+) -> Result<BoundaryPlane, ModelError> {
     match plan.boundary_plane {
         Some(plane) => trace_spanned(plan, plane, index, stop),
         None => Ok(BoundaryPlane {
@@ -76,7 +80,7 @@ pub fn trace_plane(plan: &Plan, index: &[usize], stop: &Stop) -> Result<Boundary
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
-pub fn trace_spanned(
+pub(crate) fn trace_spanned(
     plan: &Plan,
     (p, q): (usize, usize),
     index: &[usize],

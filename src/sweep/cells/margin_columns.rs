@@ -3,7 +3,7 @@
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
 use crate::answers::margins::Around;
-use crate::linear::margins::{Limits, LoopMargins, Margins};
+use crate::linear::margins::{Limits, LoopMargins, MarginSearch};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
 use crate::setting::field::Field;
@@ -11,7 +11,7 @@ use crate::setting::source::{OfMargins, Source};
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct MarginColumns {
-    search: Margins,
+    search: MarginSearch,
     wanted: Vec<OfMargins>,
 }
 
@@ -47,7 +47,7 @@ impl MarginColumns {
             _ => None,
         });
         let columns = Self {
-            search: Margins::default(),
+            search: MarginSearch::default(),
             wanted: wanted.collect(),
         };
         (!columns.wanted.is_empty()).then_some(columns)

@@ -43,16 +43,6 @@ pub enum Question {
 }
 
 impl Question {
-    /// All.
-    pub const ALL: [Self; 6] = [
-        Self::Count,
-        Self::Abscissa,
-        Self::Outcome,
-        Self::BasinShare,
-        Self::CriticalVelocity,
-        Self::SwitchOn,
-    ];
-
     /// What is compared with what, in words.
     #[must_use]
     pub const fn name(self) -> &'static str {

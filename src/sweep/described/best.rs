@@ -20,7 +20,7 @@ use crate::sweep::plan::Plan;
 /// none.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "store", derive(Serialize, Deserialize))]
-pub struct BestRow {
+pub(crate) struct BestRow {
     numbers: [f64; 5],
     flags: [i8; 2],
     regions: i32,
@@ -29,7 +29,7 @@ pub struct BestRow {
 impl BestRow {
     /// The row of what was found in a plane.
     #[must_use]
-    pub fn of(found: Option<&BestSettings>) -> Self {
+    pub(crate) fn of(found: Option<&BestSettings>) -> Self {
         let Some(found) = found else {
             return Self {
                 numbers: [f64::NAN; 5],
@@ -56,7 +56,7 @@ impl BestRow {
     }
 
     /// The values of the variables that are computed, in the order of the group.
-    pub fn values(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn values(&self) -> impl Iterator<Item = f64> {
         let numbers = self.numbers.into_iter();
         let flags = self.flags.map(f64::from).into_iter();
         numbers.chain(flags).chain([f64::from(self.regions)])

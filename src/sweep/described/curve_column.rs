@@ -3,11 +3,11 @@
 use super::Element;
 
 /// Stands before the name of a parameter where its values are those of corners.
-pub const CORNER: &str = "corner_";
+pub(crate) const CORNER: &str = "corner_";
 
 /// What each number of a column belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Per {
+pub(crate) enum Per {
     /// One piece of a curve.
     Curve,
     /// A vertex of a piece. The vertices of all pieces follow one another.
@@ -18,11 +18,11 @@ pub enum Per {
 
 impl Per {
     /// The dimensions of columns.
-    pub const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
+    pub(crate) const ALL: [Self; 3] = [Self::Curve, Self::Vertex, Self::Corner];
 
     /// The name of the dimension.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Curve => "curve",
             Self::Vertex => "vertex",
@@ -33,7 +33,7 @@ impl Per {
 
 /// What a column is called, and the unit of its numbers.
 #[derive(Debug, Clone, Copy)]
-pub enum Named {
+pub(crate) enum Named {
     /// A number with this name and this meaning.
     Number(&'static str, &'static str),
     /// A frequency.
@@ -49,7 +49,7 @@ pub enum Named {
 
 /// What a column is called, and what its numbers are.
 #[derive(Debug, Clone, Copy)]
-pub struct BoundaryColumn {
+pub(crate) struct BoundaryColumn {
     /// What each number belongs to.
     pub per: Per,
     /// Its name and unit.
@@ -74,7 +74,7 @@ pub(super) const fn column(per: Per, named: Named) -> BoundaryColumn {
 
 /// The numbers of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Column<'a> {
+pub(crate) enum Column<'a> {
     /// i8.
     I8(&'a [i8]),
     /// i32.
@@ -87,7 +87,7 @@ pub enum Column<'a> {
 
 /// The numbers of a column, to be filled.
 #[derive(Debug, PartialEq)]
-pub enum ColumnMut<'a> {
+pub(crate) enum ColumnMut<'a> {
     /// i8.
     I8(&'a mut Vec<i8>),
     /// i32.
@@ -117,7 +117,7 @@ macro_rules! column_of {
         impl Column<'_> {
             /// The type of the numbers.
             #[must_use]
-            pub fn element(self) -> Element {
+            pub(crate) fn element(self) -> Element {
                 match self {
                     $(Self::$variant(_) => Element::$variant,)*
                 }
@@ -135,12 +135,12 @@ macro_rules! column_of {
 column_of!(i8: I8, i32: I32, i64: I64, f64: F64);
 
 /// A column for the reference of map files: what its numbers belong to, its name, its meaning.
-pub type DescribedColumn = (&'static str, String, String);
+pub(crate) type DescribedColumn = (&'static str, String, String);
 
 impl Named {
     /// Name and meaning of what is not a parameter.
     #[must_use]
-    pub fn own(self) -> Option<(&'static str, &'static str)> {
+    pub(crate) fn own(self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::Number(name, meaning)
             | Self::Frequency(name, meaning)

@@ -28,7 +28,7 @@ macro_rules! boundary_columns {
         impl $Rows {
             /// All columns with what they are, in the order of the map.
             #[must_use]
-            pub fn columns(&self) -> Vec<(&'static BoundaryColumn, Column<'_>)> {
+            pub(crate) fn columns(&self) -> Vec<(&'static BoundaryColumn, Column<'_>)> {
                 vec![$({
                     const ABOUT: &BoundaryColumn = &$row;
                     (ABOUT, Column::from(&self.$name))
@@ -37,7 +37,7 @@ macro_rules! boundary_columns {
 
             /// All columns with what they are, to be filled.
             #[must_use]
-            pub fn columns_mut(&mut self) -> Vec<(&'static BoundaryColumn, ColumnMut<'_>)> {
+            pub(crate) fn columns_mut(&mut self) -> Vec<(&'static BoundaryColumn, ColumnMut<'_>)> {
                 vec![$({
                     const ABOUT: &BoundaryColumn = &$row;
                     (ABOUT, ColumnMut::from(&mut self.$name))
@@ -226,7 +226,7 @@ impl CurveRows {
 
     /// Number of vertices of all curves.
     #[must_use]
-    pub fn vertices(&self) -> usize {
+    pub(crate) fn vertices(&self) -> usize {
         self.p.len()
     }
 
@@ -238,13 +238,13 @@ impl CurveRows {
 
     /// Number of corners.
     #[must_use]
-    pub fn corners(&self) -> usize {
+    pub(crate) fn corners(&self) -> usize {
         self.corner_stable.len()
     }
 
     /// Whether the columns have the same lengths, and the curves as many vertices as they say.
     #[must_use]
-    pub fn is_consistent(&self) -> bool {
+    pub(crate) fn is_consistent(&self) -> bool {
         let vertices = self.vertex_count.iter().try_fold(0_usize, |sum, &n| {
             usize::try_from(n).ok().and_then(|n| sum.checked_add(n))
         });

@@ -4,7 +4,7 @@ use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
 
 /// How a pair of roots crosses, in the words of the map: for −1, 0, 1.
-pub const DIRECTIONS: &str = "to_the_left touch to_the_right";
+pub(crate) const DIRECTIONS: &str = "to_the_left touch to_the_right";
 /// The side of a curve on which sliding is stable, in the words of the map, for −2 to 2, in planes
 /// with the delay. −2 and 2 stand where the first parameter of the plane is constant along the
 /// curve.
@@ -14,7 +14,7 @@ pub(super) const STABLE_SIDES: &str =
 /// The side of a curve on which sliding is stable, in the words of a map with planes of these two
 /// parameters, for −2 to 2. Without the delay the words name both of them.
 #[must_use]
-pub fn stable_sides([first, second]: [&Quantity; 2]) -> String {
+pub(crate) fn stable_sides([first, second]: [&Quantity; 2]) -> String {
     if *second == Parameter::Tau {
         return STABLE_SIDES.to_owned();
     }
@@ -24,7 +24,7 @@ pub fn stable_sides([first, second]: [&Quantity; 2]) -> String {
 
 /// The meaning of the direction of a curve in planes with this second parameter.
 #[must_use]
-pub fn direction_along(second: &Quantity) -> String {
+pub(crate) fn direction_along(second: &Quantity) -> String {
     let grows = match *second == Parameter::Tau {
         true => "delay",
         false => second.name(),
@@ -37,4 +37,4 @@ pub(super) const DIRECTION: &str = "direction";
 pub(super) const STABLE_SIDE: &str = "stable_side";
 
 /// What lies on the line along a curve, in the words of the map: for 0, 1, 2.
-pub const CURVE_KINDS: &str = "pair real_root leading_coefficient";
+pub(crate) const CURVE_KINDS: &str = "pair real_root leading_coefficient";

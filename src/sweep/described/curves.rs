@@ -151,7 +151,7 @@ pub(super) fn group(plan: &Plan, (p, q): (usize, usize), first_dimension: usize)
 
 /// The curves of some planes, with the values of the axes outside the planes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CurveTable {
+pub(crate) struct CurveTable {
     rows: CurveRows,
     /// A column for each axis outside the planes.
     of_curves: Vec<Vec<f64>>,
@@ -161,7 +161,7 @@ pub struct CurveTable {
 impl CurveTable {
     /// An empty table for planes of `plan`.
     #[must_use]
-    pub fn new(plan: &Plan) -> Self {
+    pub(crate) fn new(plan: &Plan) -> Self {
         let outer = outer_values(plan, &vec![0; plan.spec.axes.len()]).len();
         Self {
             rows: CurveRows::default(),
@@ -172,7 +172,7 @@ impl CurveTable {
 
     /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside
     /// of it.
-    pub fn append(&mut self, rows: &CurveRows, outer: &[f64]) {
+    pub(crate) fn append(&mut self, rows: &CurveRows, outer: &[f64]) {
         self.rows.extend(rows);
         let columns = self.of_curves.iter_mut().zip(&mut self.of_corners);
         for ((of_curves, of_corners), &value) in columns.zip(outer) {
@@ -182,7 +182,7 @@ impl CurveTable {
     }
 
     /// Removes all rows.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.rows.clear();
         let columns = self.of_curves.iter_mut().chain(&mut self.of_corners);
         columns.for_each(Vec::clear);
@@ -190,14 +190,14 @@ impl CurveTable {
 
     /// The length of each dimension, in the order of [`Per`].
     #[must_use]
-    pub fn lengths(&self) -> [usize; 3] {
+    pub(crate) fn lengths(&self) -> [usize; 3] {
         let rows = &self.rows;
         [rows.curves(), rows.vertices(), rows.corners()]
     }
 
     /// The columns, in the order of the variables of the group.
     #[must_use]
-    pub fn columns(&self) -> Vec<Column<'_>> {
+    pub(crate) fn columns(&self) -> Vec<Column<'_>> {
         in_order(
             self.rows.columns(),
             self.of_curves.iter().map(Column::from),

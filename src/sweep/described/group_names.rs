@@ -7,7 +7,7 @@ use super::curve_column::{CORNER, Per};
 use super::curve_rows::CurveRows;
 
 /// Stands before the name of a parameter that something else in the group has.
-pub const PREFIX: &str = "parameter_";
+pub(crate) const PREFIX: &str = "parameter_";
 
 /// Every name in the group of curves that is not of a parameter.
 #[must_use]

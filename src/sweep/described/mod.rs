@@ -14,16 +14,16 @@
 //! - `schema`: names, meanings and format version
 //! - `trace`: a motion over time and its events
 
-pub mod best;
+pub(crate) mod best;
 mod cells;
-pub mod curve_column;
+pub(crate) mod curve_column;
 pub mod curve_rows;
-pub mod curve_words;
-pub mod curves;
+pub(crate) mod curve_words;
+pub(crate) mod curves;
 pub mod group_names;
 pub mod root;
-pub mod schema;
-pub mod trace;
+pub(crate) mod schema;
+pub(crate) mod trace;
 
 use super::plan::Plan;
 use crate::answers::trace::Trace;
@@ -31,7 +31,7 @@ use crate::setting::case_file::CaseSpec;
 use root::Provenance;
 
 /// The attribute by which netCDF readers recognise elements without a value.
-pub const FILL_VALUE: &str = "_FillValue";
+pub(crate) const FILL_VALUE: &str = "_FillValue";
 
 /// A file: its dimensions and its groups.
 ///
@@ -91,7 +91,7 @@ pub struct Variable {
     pub dimensions: Vec<usize>,
     /// The element that stands for no value, where there can be such.
     pub fill: Option<f64>,
-    /// Its attributes. Where integers have a fill value, [`FILL_VALUE`] is added last if one is
+    /// Its attributes. Where integers have a fill value, `FILL_VALUE` is added last if one is
     /// missing: with it, readers turn integers into floats.
     pub attributes: Vec<Attribute>,
     /// Its values, where they are known before anything is computed: coordinates and parameters.
@@ -246,13 +246,13 @@ impl Described {
 
     /// The group with this name.
     #[must_use]
-    pub fn group(&self, name: &str) -> Option<&Group> {
+    pub(crate) fn group(&self, name: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.name == name)
     }
 
     /// The length of each dimension of a variable, 0 where it grows.
     #[must_use]
-    pub fn shape(&self, variable: &Variable) -> Vec<usize> {
+    pub(crate) fn shape(&self, variable: &Variable) -> Vec<usize> {
         let dimensions = variable.dimensions.iter();
         let length = |&place: &usize| self.dimensions[place].length.unwrap_or(0);
         dimensions.map(length).collect()

@@ -88,7 +88,7 @@ fn friction(setting: &Setting) -> Vec<Attribute> {
 
 /// The attributes of the root that describe a case, besides its parameters, by name.
 #[must_use]
-pub fn numbers_of_case(case: &Case) -> [(&'static str, f64); 5] {
+pub(crate) fn numbers_of_case(case: &Case) -> [(&'static str, f64); 5] {
     let (x_dot0, a0) = case.initial_state();
     [
         ("x_dot0", x_dot0),

@@ -6,130 +6,130 @@
 /// which the regime and `v_smooth` follow. 5: `class` is renamed `regime`, and integers have no
 /// `_FillValue` where no cell is missing. 6: motions without a given start begin faster than they
 /// are pulled, see [`DISTURBED_SINCE`]; the field `last_release`.
-pub const FORMAT_VERSION: i32 = 6;
+pub(crate) const FORMAT_VERSION: i32 = 6;
 /// The first version with a seal.
-pub const SEALED_SINCE: i32 = 3;
+pub(crate) const SEALED_SINCE: i32 = 3;
 /// The first version in which motions without a given start are disturbed. Before, they began in
 /// equilibrium.
-pub const DISTURBED_SINCE: i32 = 6;
+pub(crate) const DISTURBED_SINCE: i32 = 6;
 /// The oldest version that is still read; readers refuse older and newer ones.
-pub const OLDEST_FORMAT_VERSION: i32 = 1;
+pub(crate) const OLDEST_FORMAT_VERSION: i32 = 1;
 
 /// Conventions that a map follows.
-pub const CONVENTIONS: &str = "CF-1.11";
+pub(crate) const CONVENTIONS: &str = "CF-1.11";
 
 /// Version of the trace format that is written. 2: see [`RELEASED_SINCE_SWITCH_ON`].
-pub const TRACE_FORMAT_VERSION: i32 = 2;
+pub(crate) const TRACE_FORMAT_VERSION: i32 = 2;
 /// The first version in which `last_release` counts from switch-on, as `settle_time` does. Before,
 /// it counted from t = 0.
-pub const RELEASED_SINCE_SWITCH_ON: i32 = 2;
+pub(crate) const RELEASED_SINCE_SWITCH_ON: i32 = 2;
 /// The oldest version of a trace that is still read.
-pub const OLDEST_TRACE_FORMAT_VERSION: i32 = 1;
+pub(crate) const OLDEST_TRACE_FORMAT_VERSION: i32 = 1;
 
 /// Names in a trace file besides those of parameters.
-pub mod trace {
+pub(crate) mod trace {
     /// Root attribute: [`super::TRACE_FORMAT_VERSION`]; marks a file as a trace.
-    pub const FORMAT_VERSION: &str = "slipmap_trace_format_version";
+    pub(crate) const FORMAT_VERSION: &str = "slipmap_trace_format_version";
     /// Root attribute: the case file's text.
-    pub const CASE: &str = "case";
+    pub(crate) const CASE: &str = "case";
     /// Root attribute: name of the outcome.
-    pub const OUTCOME: &str = "outcome";
+    pub(crate) const OUTCOME: &str = "outcome";
     /// Group and dimension of the events.
-    pub const EVENT: &str = "event";
+    pub(crate) const EVENT: &str = "event";
     /// The dimension: time. In the group of events: the time of each event.
-    pub const TIME: &str = "t";
+    pub(crate) const TIME: &str = "t";
     /// The mode of the block from a sample on.
-    pub const MODE: &str = "mode";
+    pub(crate) const MODE: &str = "mode";
     /// Of events: what happens.
-    pub const KIND: &str = "kind";
+    pub(crate) const KIND: &str = "kind";
     /// Of events: the elongation at that time.
-    pub const ELONGATION: &str = "a";
+    pub(crate) const ELONGATION: &str = "a";
     /// Root attribute: number of steps taken until the outcome was known.
-    pub const STEPS: &str = "steps";
+    pub(crate) const STEPS: &str = "steps";
 }
 
 /// Root attributes.
-pub mod root {
+pub(crate) mod root {
     /// [`super::FORMAT_VERSION`] of the file; marks a file as a map.
-    pub const FORMAT_VERSION: &str = "slipmap_format_version";
+    pub(crate) const FORMAT_VERSION: &str = "slipmap_format_version";
     /// Names of the axes, the map's dimensions in order, separated by blanks.
-    pub const AXES: &str = "axes";
+    pub(crate) const AXES: &str = "axes";
     /// Hash of the plan, see [`crate::sweep::Plan::hash`].
-    pub const PLAN_HASH: &str = "plan_hash";
+    pub(crate) const PLAN_HASH: &str = "plan_hash";
     /// The sweep file's text.
-    pub const SWEEP: &str = "sweep";
+    pub(crate) const SWEEP: &str = "sweep";
     /// Title of the sweep.
-    pub const TITLE: &str = "title";
+    pub(crate) const TITLE: &str = "title";
     /// What wrote the file.
-    pub const SOURCE: &str = "source";
+    pub(crate) const SOURCE: &str = "source";
     /// Version of the program.
-    pub const PROGRAM_VERSION: &str = "program_version";
+    pub(crate) const PROGRAM_VERSION: &str = "program_version";
     /// Git revision of the program.
-    pub const GIT_REVISION: &str = "git_revision";
+    pub(crate) const GIT_REVISION: &str = "git_revision";
     /// When and how the map was made.
-    pub const HISTORY: &str = "history";
+    pub(crate) const HISTORY: &str = "history";
     /// Number of cells that are not computed yet; absent in a complete map.
-    pub const CELLS_MISSING: &str = "cells_missing";
+    pub(crate) const CELLS_MISSING: &str = "cells_missing";
     /// The share of v0 by which blocks are faster than they are pulled at t = 0, where the sweep
     /// gives no start; absent where it gives one.
-    pub const DISTURBANCE: &str = "disturbance";
+    pub(crate) const DISTURBANCE: &str = "disturbance";
     /// Tolerance of the marginal flag.
-    pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
+    pub(crate) const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
     /// [`crate::setting::search::LIMIT`], for a map of that limit.
-    pub const PROTOCOL: &str = "protocol";
+    pub(crate) const PROTOCOL: &str = "protocol";
     /// The text of the system in the form of a system file; absent for the letter's system.
-    pub const SYSTEM: &str = "system";
+    pub(crate) const SYSTEM: &str = "system";
     /// Name of the friction law, where there is one.
-    pub const FRICTION_LAW: &str = "friction_law";
+    pub(crate) const FRICTION_LAW: &str = "friction_law";
     /// Speeds of the points of a friction law from a table.
-    pub const FRICTION_SPEEDS: &str = "friction_speeds";
+    pub(crate) const FRICTION_SPEEDS: &str = "friction_speeds";
     /// μ_K at these speeds.
-    pub const FRICTION_MU_K: &str = "friction_mu_k";
+    pub(crate) const FRICTION_MU_K: &str = "friction_mu_k";
 }
 
 /// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other,
 /// last dimension fastest.
-pub const CHUNKS_SHA256: &str = "chunks_sha256";
+pub(crate) const CHUNKS_SHA256: &str = "chunks_sha256";
 
 /// Root attribute: SHA-256 over everything in the map except the cells, the references between
 /// datasets and the history.
-pub const CONTENTS_SHA256: &str = "contents_sha256";
+pub(crate) const CONTENTS_SHA256: &str = "contents_sha256";
 
 /// Attributes that summarise the values of a dataset of cells; counts of cells are u64.
-pub mod summary {
+pub(crate) mod summary {
     /// The smallest and the largest value, including infinite ones, in the type of the cells. The
     /// name is from the CF conventions.
-    pub const ACTUAL_RANGE: &str = "actual_range";
+    pub(crate) const ACTUAL_RANGE: &str = "actual_range";
     /// The smallest and the largest finite value; reals only.
-    pub const FINITE_RANGE: &str = "finite_range";
+    pub(crate) const FINITE_RANGE: &str = "finite_range";
     /// Number of cells with −∞ and with +∞; reals only.
-    pub const INFINITE: &str = "cells_infinite";
+    pub(crate) const INFINITE: &str = "cells_infinite";
     /// Number of cells without a value.
-    pub const WITHOUT_VALUE: &str = "cells_without_value";
+    pub(crate) const WITHOUT_VALUE: &str = "cells_without_value";
     /// Number of cells of each kind, or with each flag, in the order of `flag_meanings`.
-    pub const FLAG_CELLS: &str = "flag_cells";
+    pub(crate) const FLAG_CELLS: &str = "flag_cells";
     /// Number of cells without any flag.
-    pub const UNFLAGGED: &str = "cells_unflagged";
+    pub(crate) const UNFLAGGED: &str = "cells_unflagged";
 }
 
-pub use crate::setting::map_names::{BEST, BOUNDARIES, STATUS};
+pub(crate) use crate::setting::map_names::{BEST, BOUNDARIES, STATUS};
 
 /// Variables of the group of best settings, besides the gain and the delay.
-pub mod best {
+pub(crate) mod best {
     /// The spectral abscissa.
-    pub const ABSCISSA: &str = "abscissa";
+    pub(crate) const ABSCISSA: &str = "abscissa";
     /// The lowest frequency among the rightmost roots.
-    pub const FREQUENCY: &str = "frequency";
+    pub(crate) const FREQUENCY: &str = "frequency";
     /// −1/abscissa.
-    pub const RELAXATION_TIME: &str = "relaxation_time";
+    pub(crate) const RELAXATION_TIME: &str = "relaxation_time";
     /// Number of the [`crate::linear::best::Kind`].
-    pub const KIND: &str = "kind";
+    pub(crate) const KIND: &str = "kind";
     /// Whether the argument principle confirms the abscissa.
-    pub const CERTIFIED: &str = "certified";
+    pub(crate) const CERTIFIED: &str = "certified";
     /// Number of stable regions of the plane, with those that are not told.
-    pub const REGIONS: &str = "regions";
+    pub(crate) const REGIONS: &str = "regions";
     /// The names of these variables.
-    pub const ALL: [&str; 6] = [
+    pub(crate) const ALL: [&str; 6] = [
         ABSCISSA,
         FREQUENCY,
         RELAXATION_TIME,
@@ -140,46 +140,46 @@ pub mod best {
 }
 
 /// Value of the flags and counts in the group of best settings where nothing was found.
-pub const BEST_FLAG_FILL: i8 = -1;
+pub(crate) const BEST_FLAG_FILL: i8 = -1;
 
 /// Attribute of a parameter's variable in the group of curves, where the variable cannot have the
 /// parameter's name: that name.
-pub const PARAMETER: &str = "parameter";
+pub(crate) const PARAMETER: &str = "parameter";
 
 /// Attribute of both groups: the two axes that span the planes, the first parameter and the delay.
-pub const PLANE: &str = "plane";
+pub(crate) const PLANE: &str = "plane";
 
 /// σ of each curve: roots on it have Re λ = −σ. Absent before format version 2, where it is 0.
-pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
+pub(crate) const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
-pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
+pub(crate) const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
 
 /// Attributes of fields over many starts.
-pub mod basin {
+pub(crate) mod basin {
     /// What the starts are: states, or phases of the uncontrolled cycle.
-    pub const OVER: &str = "over";
+    pub(crate) const OVER: &str = "over";
     /// Number of starts.
-    pub const STARTS: &str = "starts";
+    pub(crate) const STARTS: &str = "starts";
     /// Number of independent scramblings of their sequence.
-    pub const SCRAMBLINGS: &str = "scramblings";
+    pub(crate) const SCRAMBLINGS: &str = "scramblings";
     /// The region of the starts, in words.
-    pub const REGION: &str = "region";
+    pub(crate) const REGION: &str = "region";
     /// The range of their velocities, where the sweep gives it.
-    pub const X_DOT0: &str = "x_dot0_range";
+    pub(crate) const X_DOT0: &str = "x_dot0_range";
     /// The range of their elongations, where the sweep gives it.
-    pub const A0: &str = "a0_range";
+    pub(crate) const A0: &str = "a0_range";
 }
 
 /// Attributes of fields of the critical velocity.
-pub mod vc {
+pub(crate) mod vc {
     /// Name of the protocol.
-    pub const PROTOCOL: &str = "protocol";
+    pub(crate) const PROTOCOL: &str = "protocol";
     /// Number of phases among which the worst counts, for that protocol.
-    pub const PHASES: &str = "phases";
+    pub(crate) const PHASES: &str = "phases";
     /// The largest v0 of the search for stick-slip, in [`V_MAX_UNIT`].
-    pub const V_MAX: &str = "v_max";
+    pub(crate) const V_MAX: &str = "v_max";
     /// The unit of [`V_MAX`], in the words of the map.
-    pub const V_MAX_UNIT: &str = "v_max_unit";
+    pub(crate) const V_MAX_UNIT: &str = "v_max_unit";
     /// Relative precision of the velocities.
-    pub const PRECISION: &str = "precision";
+    pub(crate) const PRECISION: &str = "precision";
 }

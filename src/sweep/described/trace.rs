@@ -16,10 +16,10 @@ use crate::setting::units::Units;
 const FLAG_FILL: u8 = 255;
 
 /// Bytes of a sample before compression: time, the quantities, the mode.
-pub const BYTES_OF_A_SAMPLE: u64 = 8 * (1 + QUANTITIES.len() as u64) + 1;
+pub(crate) const BYTES_OF_A_SAMPLE: u64 = 8 * (1 + QUANTITIES.len() as u64) + 1;
 
 /// A quantity of a motion, one for each sample.
-pub struct Quantity {
+pub(crate) struct Quantity {
     /// Name in files.
     pub name: &'static str,
     /// Its meaning, in words.
@@ -33,19 +33,19 @@ pub struct Quantity {
 impl Quantity {
     /// Its value at a sample.
     #[must_use]
-    pub fn of(&self, sample: &Sample) -> f64 {
+    pub(crate) fn of(&self, sample: &Sample) -> f64 {
         (self.of)(sample)
     }
 
     /// Its unit, "1" where it has none.
     #[must_use]
-    pub fn unit(&self, units: &Units) -> String {
+    pub(crate) fn unit(&self, units: &Units) -> String {
         units.of(self.dimension)
     }
 }
 
 /// Time, over which the quantities are given.
-pub const TIME: Quantity = Quantity {
+pub(crate) const TIME: Quantity = Quantity {
     name: names::TIME,
     long_name: "time",
     dimension: [0, 0, 1],
@@ -53,7 +53,7 @@ pub const TIME: Quantity = Quantity {
 };
 
 /// The quantities in the order of the file.
-pub const QUANTITIES: [Quantity; 5] = [
+pub(crate) const QUANTITIES: [Quantity; 5] = [
     Quantity {
         name: "x",
         long_name: "position of the block",
@@ -177,7 +177,7 @@ fn events(units: &Units) -> Group {
 }
 
 /// The values of the variables over time that are computed, one after the other.
-pub fn columns(trace: &Trace) -> impl Iterator<Item = Vec<f64>> {
+pub(crate) fn columns(trace: &Trace) -> impl Iterator<Item = Vec<f64>> {
     let quantities = QUANTITIES.iter().map(|quantity| column(trace, quantity.of));
     let mode = |sample: &Sample| number(&MODES, &sample.mode);
     quantities.chain(std::iter::once_with(move || {
@@ -187,7 +187,7 @@ pub fn columns(trace: &Trace) -> impl Iterator<Item = Vec<f64>> {
 
 /// The values of the variables of events.
 #[must_use]
-pub fn event_columns(events: &[TraceEvent]) -> [Vec<f64>; 3] {
+pub(crate) fn event_columns(events: &[TraceEvent]) -> [Vec<f64>; 3] {
     [
         events.iter().map(|event| event.t).collect(),
         events

@@ -69,7 +69,7 @@ impl Memory {
     /// The most threads, up to `asked`, that stay within `limit` bytes; none where one thread does
     /// not.
     #[must_use]
-    pub fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
+    pub(crate) fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
         let fitting = limit.checked_sub(self.shared)? / self.per_thread;
         let threads = usize::try_from(fitting).unwrap_or(usize::MAX).min(asked);
         (threads > 0).then_some(threads)
@@ -112,13 +112,13 @@ fn delay(setting: &Setting) -> [f64; 2] {
 
 /// The most bytes that following one motion of a setting takes.
 #[must_use]
-pub fn of_motion(setting: &Setting) -> u64 {
+pub(crate) fn of_motion(setting: &Setting) -> u64 {
     PASTS_OF_OUTCOMES * past(delay(setting))
 }
 
 /// The most bytes that the search for the critical velocity of a setting takes.
 #[must_use]
-pub fn of_critical_velocity(setting: &Setting) -> u64 {
+pub(crate) fn of_critical_velocity(setting: &Setting) -> u64 {
     PASTS_OF_CRITICAL * past(delay(setting))
 }
 

@@ -6,10 +6,10 @@
 //! - `tile`: rectangular blocks of cells
 //! - `tile_size`: the size of tiles, and where lines may be cut
 
-pub mod memory;
+pub(crate) mod memory;
 pub mod pieces;
-pub mod planes_of_curves;
-pub mod tile;
+pub(crate) mod planes_of_curves;
+pub(crate) mod tile;
 mod tile_size;
 
 use std::borrow::Cow;

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A part of a sweep that is computed, stored and checked on its own. Each kind is numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Piece {
-    /// The curves of a plane, see [`crate::sweep::cells::boundaries::plane`].
+    /// The curves of a plane, see `sweep::cells::boundaries::plane`.
     Curves(u64),
     /// The best settings of a plane, see [`crate::sweep::cells::best_planes::best_plane`].
     Best(u64),
@@ -74,13 +74,13 @@ impl Shard {
 
     /// Whether the piece at `place` belongs to the shard.
     #[must_use]
-    pub fn holds(self, place: u64) -> bool {
+    pub(crate) fn holds(self, place: u64) -> bool {
         place % self.of == self.number - 1
     }
 
     /// Whether it is the whole sweep.
     #[must_use]
-    pub fn is_whole(self) -> bool {
+    pub(crate) fn is_whole(self) -> bool {
         self.of == 1
     }
 
@@ -165,7 +165,7 @@ impl Todo {
     }
 
     /// Takes a piece off the list.
-    pub fn mark_done(&mut self, piece: Piece) {
+    pub(crate) fn mark_done(&mut self, piece: Piece) {
         if let Some(place) = self.pieces.place(piece) {
             self.done[(place / 64) as usize] |= 1 << (place % 64);
         }

@@ -43,7 +43,7 @@ pub enum NoBoundaries {
 impl NoBoundaries {
     /// Whether `boundaries = true` would have them traced.
     #[must_use]
-    pub const fn is_only_unasked(self) -> bool {
+    pub(crate) const fn is_only_unasked(self) -> bool {
         matches!(self, Self::NoDelay | Self::TooMany { .. })
     }
 }
@@ -81,6 +81,6 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
 /// Whether the curves in planes with the second axis `q` come from the closed form for the letter's
 /// lines of delays.
 #[must_use]
-pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
+pub(crate) fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
     spec.axes[q].parameter == Parameter::Tau && spec.is_of_letter()
 }

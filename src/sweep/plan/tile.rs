@@ -31,7 +31,7 @@ impl TileGrid {
 
     /// Length of each axis of the map.
     #[must_use]
-    pub fn shape(&self) -> &[usize] {
+    pub(crate) fn shape(&self) -> &[usize] {
         &self.shape
     }
 

@@ -28,7 +28,7 @@ impl DelayLine {
 
     /// Finds what [`DelayLine::of_latencies`] finds, in the memory of this line; false where there
     /// is none.
-    pub fn find_latencies(&mut self, system: &System, tau: f64) -> bool {
+    pub(crate) fn find_latencies(&mut self, system: &System, tau: f64) -> bool {
         let (Some(at_once), Some(late)) = (system.with_latency(0.0), system.with_latency(1.0))
         else {
             return false;
@@ -93,7 +93,7 @@ impl DelayLine {
     /// that begins stable; 0 where it begins unstable, ∞ where nothing changes, NaN where that is
     /// open.
     #[must_use]
-    pub fn latency_margin(&self) -> f64 {
+    pub(crate) fn latency_margin(&self) -> f64 {
         if self.uncounted {
             return match self.reason {
                 Some(Reason::Infinite) => 0.0,

@@ -21,7 +21,7 @@ impl Beyond {
 
     /// The loop of these groups, (1) and (2) of `beyond`.
     #[must_use]
-    pub fn of_groups(&self, groups: Groups) -> FeedbackLoop {
+    pub(crate) fn of_groups(&self, groups: Groups) -> FeedbackLoop {
         FeedbackLoop::of_letter(groups, self.channel, self.lags)
     }
 
