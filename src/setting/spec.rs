@@ -88,8 +88,8 @@ use crate::linear::MarginalTolerance;
 /// ".parse()?;
 /// assert_eq!(sweep.axes[0].values[1], 1.5);
 /// // An error points at its place.
-/// let error = "fields = [\"n_unstabel\"]".parse::<SweepSpec>().unwrap_err();
-/// assert_eq!(error.span, Some(10..22));
+/// let error = "field = []".parse::<SweepSpec>().unwrap_err();
+/// assert_eq!(error.span, Some(0..5));
 /// # Ok::<(), slipmap::text::SpecError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
