@@ -12,7 +12,7 @@
 //!
 //! | module | what it holds | feature |
 //! |---|---|---|
-//! | [`text`] | numbers in messages, suggestions for names, TOML with places | |
+//! | [`text`] | numbers in messages; the errors of files, with their places | |
 //! | [`model`] | the oscillator, friction laws, dimensionless groups | |
 //! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane | |
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
@@ -22,11 +22,12 @@
 //! | [`sweep`] | plans, the engine that computes maps, what a map says | `sweep` |
 //! | [`explore`] | requests about a point or a plane, as plain data | `explore` |
 //! | [`store`] | map and trace files | `store` |
-//! | [`maps`] | from a plan to its map; checks and display of maps | `store` |
+//! | [`maps`] | from a plan to its map; checks of maps | `store` |
+//! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //!
-//! Beside them stands what belongs to the program alone: the server, the claims of the letter, the
-//! command line. `cli`, the default, includes all features. With `default-features = false` the
+//! Beside them stands what belongs to the program alone: the claims of the letter, the command line.
+//! `cli`, the default, includes all features. With `default-features = false` the
 //! first five modules remain, without libhdf5 and without a C compiler.
 //!
 //! # Example
@@ -91,7 +92,7 @@ pub mod report;
 #[cfg(test)]
 mod revision;
 #[cfg(feature = "serve")]
-pub(crate) mod serve;
+pub mod serve;
 #[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod setting;
@@ -103,4 +104,5 @@ pub mod store;
 #[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod sweep;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod text;

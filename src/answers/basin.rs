@@ -2,7 +2,7 @@
 //! (Menck et al., Nature Physics 9, 89, 2013).
 //!
 //! Starts are points of a Sobol sequence, which fills a box more evenly than random points. There
-//! are `SCRAMBLINGS` independent scramblings of it by Owen's method. Each alone gives an unbiased
+//! are [`SCRAMBLINGS`] independent scramblings of it by Owen's method. Each alone gives an unbiased
 //! share, so the spread between them gives the standard error of their mean; a single unscrambled
 //! sequence would give no error. The scramblings are the same in all cells. Shares therefore depend
 //! on the setting alone, and neighbouring ones differ by less than their errors.
@@ -23,7 +23,7 @@ use crate::slip::motion::{Integrator, Motion};
 use crate::slip::outcome::Outcome;
 
 /// 95 % of Student's distribution lie within this many standard errors, if these come from
-/// `SCRAMBLINGS` values.
+/// [`SCRAMBLINGS`] values.
 pub const STUDENT_95: f64 = 2.131_449_545_559_323;
 
 /// With 95 % confidence, a part of the region without any start is no larger than this many starts'
@@ -63,7 +63,7 @@ pub enum Region {
 /// The question of a setting, and what is known before any start is followed.
 ///
 /// ```
-/// use slipmap::answers::basin::{Asked, Tally};
+/// use slipmap::answers::basin::{BasinProblem, Tally};
 /// use slipmap::setting::basin::Basin;
 /// use slipmap::setting::law_kind::{Formula, LawKind};
 /// use slipmap::setting::simulation::Simulation;
@@ -74,7 +74,7 @@ pub enum Region {
 /// let numbers = [("mu0", 0.5), ("alpha_n", -1.0), ("tau", 1.0), ("v0", 3.0)];
 /// let setting = Setting::checked(numbers, Some(law), &[])?;
 /// let basin = Basin { starts: 64, ..Basin::default() };
-/// let asked = Asked::of(&setting, &Simulation::default(), &basin)?.expect("there is a law");
+/// let asked = BasinProblem::of(&setting, &Simulation::default(), &basin)?.expect("there is a law");
 /// let (mut follower, mut motion, mut tally) = (asked.follower(), None, Tally::default());
 /// for place in asked.places() {
 ///     tally.count(place, follower.follow(place, &mut motion));
@@ -84,7 +84,7 @@ pub enum Region {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct BasinProblem {
     /// The motion, apart from its start.
     case: Case,
     region: Region,
@@ -99,13 +99,13 @@ pub struct Asked {
 /// One of the starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// Which of the `SCRAMBLINGS`.
+    /// Which of the [`SCRAMBLINGS`].
     pub scrambling: u32,
     /// Its number in that scrambling.
     pub number: u32,
 }
 
-impl Asked {
+impl BasinProblem {
     /// The question of a setting; none without a friction law.
     ///
     /// # Errors
@@ -253,7 +253,7 @@ impl Asked {
 
 /// Follows starts one after the other.
 pub struct Follower<'a> {
-    asked: &'a Asked,
+    asked: &'a BasinProblem,
     case: Case,
     stop: Stop,
 }
@@ -359,17 +359,17 @@ impl Tally {
 mod tests {
     use super::*;
 
-    fn asked(text: &str) -> Asked {
+    fn asked(text: &str) -> BasinProblem {
         let spec: crate::setting::SweepSpec = text.parse().unwrap();
         let mut setting = spec.fixed.clone();
         for axis in &spec.axes {
             setting.vary(&axis.parameter, axis.values[0]);
         }
-        let asked = Asked::of(&setting, &spec.simulation, &spec.basin.unwrap());
+        let asked = BasinProblem::of(&setting, &spec.simulation, &spec.basin.unwrap());
         asked.unwrap().unwrap()
     }
 
-    fn of_box(starts: u32) -> Asked {
+    fn of_box(starts: u32) -> BasinProblem {
         asked(&format!(
             "fields = [\"basin_share\"]\n[axes]\nv0 = [0.3]\n[basin]\nstarts = {starts}\n\
              x_dot0 = {{ from = -1.0, to = 3.0 }}\na0 = {{ from = 2.0, to = 4.0 }}\n[friction]\n\
@@ -385,7 +385,7 @@ mod tests {
         let (mut errors, mut beyond) = (Vec::new(), 0);
         for power in 6..=16 {
             for first in 0..40 {
-                let asked = Asked {
+                let asked = BasinProblem {
                     first: first * SCRAMBLINGS,
                     ..of_box(1 << power)
                 };
@@ -441,7 +441,7 @@ mod tests {
         ];
         let (mut missed, mut all) = (0, 0);
         for first in 0..60 {
-            let asked = Asked {
+            let asked = BasinProblem {
                 first: first * SCRAMBLINGS,
                 ..of_box(starts)
             };

@@ -197,13 +197,14 @@ fn acting(setting: &Setting, searched: &Quantity) -> Setting {
 ///
 /// ```
 /// use slipmap::answers::best::{best_settings, default_ranges};
+/// use slipmap::model::stop::Stop;
 /// use slipmap::setting::{Parameter, Setting};
 ///
 /// let numbers = [("mu_prime", -0.3), ("tau", 1.0), ("alpha_v", -0.3)];
 /// let setting = Setting::checked(numbers, None, &[])?;
 /// let searched = Parameter::AlphaV.into();
 /// let ranges = default_ranges(&setting, &searched)?;
-/// let found = best_settings(&setting, &searched, &ranges, &Default::default())?;
+/// let found = best_settings(&setting, &searched, &ranges, &Stop::default())?;
 /// assert!(found.overall.abscissa < 0.0, "some setting is stable");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -13,17 +13,17 @@ use crate::setting::values::Setting;
 /// A setting of the letter's own feedback, or of one with more.
 #[derive(Debug, Clone)]
 #[expect(clippy::large_enum_variant, reason = "made once a cell")]
-enum Of {
+enum AnyCase {
     Letter(Case<margins::Setting>),
     Beyond(Case),
 }
 
-/// An answer about the case of an [`Of`], whichever it is.
-macro_rules! of {
-    ($of:expr, $case:ident => $answer:expr) => {
-        match $of {
-            Of::Letter($case) => $answer,
-            Of::Beyond($case) => $answer,
+/// An answer about the case of an [`AnyCase`], whichever it is.
+macro_rules! on_case {
+    ($any:expr, $case:ident => $answer:expr) => {
+        match $any {
+            AnyCase::Letter($case) => $answer,
+            AnyCase::Beyond($case) => $answer,
         }
     };
 }
@@ -31,12 +31,12 @@ macro_rules! of {
 /// A setting and the decay required of it.
 ///
 /// ```
-/// use slipmap::answers::margins::Around;
+/// use slipmap::answers::margins::SettingMargins;
 /// use slipmap::setting::Setting;
 ///
 /// let numbers = [("mu_prime", -0.3), ("alpha_v", -0.33), ("tau", 4.15)];
 /// let setting = Setting::checked(numbers, None, &[])?;
-/// let around = Around::of(&setting, 0.0)?.expect("it is the block");
+/// let around = SettingMargins::of(&setting, 0.0)?.expect("it is the block");
 /// assert!(around.stable());
 /// // The delays between which it stays stable.
 /// let delays = around.delay();
@@ -44,8 +44,8 @@ macro_rules! of {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Around {
-    of: Of,
+pub struct SettingMargins {
+    case: AnyCase,
     /// The system and the delay, physical, where the delay alone decides on stability beyond the
     /// letter.
     line: Option<(System, f64)>,
@@ -55,7 +55,7 @@ pub struct Around {
     law: Option<(FrictionLaw, f64)>,
 }
 
-impl Around {
+impl SettingMargins {
     /// All roots must decay at least at the rate `decay` ≥ 0, in 1/time. None of systems from
     /// files, and of friction with a state, of which the slope does not say all.
     ///
@@ -79,9 +79,9 @@ impl Around {
         let beyond = (!setting.is_of_letter()).then_some(Beyond { channel, lags });
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
-            of: beyond.map_or_else(
-                || Of::Letter(of.case()),
-                |beyond| Of::Beyond(Case::beyond(of, beyond)),
+            case: beyond.map_or_else(
+                || AnyCase::Letter(of.case()),
+                |beyond| AnyCase::Beyond(Case::beyond(of, beyond)),
             ),
             line: on_axis.map(|beyond| {
                 (
@@ -100,24 +100,24 @@ impl Around {
     /// The same, but once `stop` is set margins are told soon, and mean nothing.
     #[must_use]
     pub fn heeding(mut self, stop: &Stop) -> Self {
-        of!(&mut self.of, case => case.heed(stop));
+        on_case!(&mut self.case, case => case.heed(stop));
         self
     }
 
     /// Whether the setting is stable, or decays as required, beyond doubt.
     #[must_use]
     pub fn stable(&self) -> bool {
-        of!(&self.of, case => case.stable())
+        on_case!(&self.case, case => case.stable())
     }
 
     /// The factors of both gains at which stability, or the required decay, is lost.
     pub fn gain(&self, search: &mut MarginSearch) -> Limits {
-        of!(&self.of, case => search.gain(case))
+        on_case!(&self.case, case => search.gain(case))
     }
 
     /// The phase margin in radians, the latency margin in units of time.
     pub fn of_loop(&self, search: &mut MarginSearch) -> LoopMargins {
-        let found = of!(&self.of, case => search.of_loop(case));
+        let found = on_case!(&self.case, case => search.of_loop(case));
         LoopMargins {
             latency: found.latency * self.oscillator.time_unit(),
             ..found
@@ -127,17 +127,17 @@ impl Around {
     /// Whether feedback has more than the letter's own.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
-        matches!(self.of, Of::Beyond(_))
+        matches!(self.case, AnyCase::Beyond(_))
     }
 
     /// The latency margin alone, in units of time.
     pub fn latency(&self, search: &mut MarginSearch) -> f64 {
-        of!(&self.of, case => search.latency(case)) * self.oscillator.time_unit()
+        on_case!(&self.case, case => search.latency(case)) * self.oscillator.time_unit()
     }
 
     /// The phase margin alone.
     pub fn phase(&self, search: &mut MarginSearch) -> f64 {
-        of!(&self.of, case => search.phase(case))
+        on_case!(&self.case, case => search.phase(case))
     }
 
     /// The delays at which stability is lost.
@@ -145,7 +145,7 @@ impl Around {
     pub fn delay(&self) -> Limits {
         let unit = self.oscillator.time_unit();
         let Some((system, tau)) = &self.line else {
-            return scaled(of!(&self.of, case => margins::delay(case)), unit);
+            return scaled(on_case!(&self.case, case => margins::delay(case)), unit);
         };
         let line = DelayLine::of(system).in_physical_time(unit);
         line.stable_interval_at(*tau)
@@ -158,13 +158,13 @@ impl Around {
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
     pub fn third(&self, search: &mut MarginSearch) -> (Parameter, Limits) {
         if let Some((law, v0)) = self.sliding() {
-            let limits = of!(&self.of, case => margins::velocity(case, &law, v0));
+            let limits = on_case!(&self.case, case => margins::velocity(case, &law, v0));
             return (Parameter::V0, limits);
         }
         // √(κM)/N0.
         let damping = self.oscillator.mass() / self.oscillator.time_unit();
         let slope = damping / self.oscillator.normal_load();
-        let limits = of!(&self.of, case => search.slope(case));
+        let limits = on_case!(&self.case, case => search.slope(case));
         (Parameter::MuPrime, scaled(limits, slope))
     }
 
@@ -172,7 +172,7 @@ impl Around {
     #[must_use]
     pub fn reach(&self) -> Reach {
         let unit = self.oscillator.time_unit();
-        let reach = of!(&self.of, case => case.reach());
+        let reach = on_case!(&self.case, case => case.reach());
         Reach {
             gain: reach.gain,
             delay: reach.delay * unit,
@@ -190,8 +190,10 @@ impl Around {
     #[must_use]
     pub fn radius(&self) -> Radius {
         match self.sliding() {
-            Some((law, v0)) => of!(&self.of, case => margins::radius_with_law(case, &law, v0)),
-            None => of!(&self.of, case => margins::radius(case)),
+            Some((law, v0)) => {
+                on_case!(&self.case, case => margins::radius_with_law(case, &law, v0))
+            }
+            None => on_case!(&self.case, case => margins::radius(case)),
         }
     }
 

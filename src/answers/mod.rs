@@ -12,8 +12,8 @@
 pub mod basin;
 pub mod best;
 pub mod margins;
-pub(crate) mod samples;
-pub(crate) mod trace;
+pub mod samples;
+pub mod trace;
 pub mod vc;
 
 pub use trace::Trace;

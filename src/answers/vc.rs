@@ -25,55 +25,55 @@ pub const MORE_STEPS: u64 = 100;
 
 /// The problem of a setting in the units of a motion, and those units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct VcProblem {
     /// The controlled oscillator.
     pub problem: Problem,
     /// The units of its motions, in units of the setting.
     pub units: CaseUnits,
 }
 
-/// The problem of a setting; its v0 is ignored.
-///
-/// ```
-/// use slipmap::answers::vc::asked;
-/// use slipmap::setting::law_kind::{Formula, LawKind};
-/// use slipmap::setting::search::Protocol;
-/// use slipmap::setting::{Parameter, Setting};
-///
-/// let law = LawKind::Formula(Formula::named("weakening")?);
-/// let numbers = [("mu0", 0.5), ("v_s", 0.5), ("alpha_v", -0.33), ("tau", 4.15)];
-/// let setting = Setting::checked(numbers, Some(law), &[Parameter::V0])?;
-/// let found = asked(&setting)?.find(Protocol::Follow);
-/// assert!(found.critical.vc > 0.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When the setting has no friction law, or a value is outside the model's range: a gain needs a
-/// delay τ > 0.
-pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
-    setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
-    let oscillator = setting.oscillator()?;
-    let units = CaseUnits::of(&oscillator);
-    let Some(law) = setting.friction_law()? else {
-        return Err(ModelError::of_law("a friction law"));
-    };
-    let feedback = setting.feedback();
-    let tau = feedback.tau;
-    ModelError::check(
-        "tau",
-        tau,
-        "greater than 0 where a gain acts",
-        tau > 0.0 || !feedback.gains.act(),
-    )?;
-    let problem = Problem {
-        velocity_unit: units.velocity,
-        ..Problem::new(law, feedback.dimensionless(&oscillator))
-    };
-    Ok(Asked { problem, units })
-}
+impl VcProblem {
+    /// The problem of a setting; its v0 is ignored.
+    ///
+    /// ```
+    /// use slipmap::answers::vc::VcProblem;
+    /// use slipmap::setting::law_kind::{Formula, LawKind};
+    /// use slipmap::setting::search::Protocol;
+    /// use slipmap::setting::{Parameter, Setting};
+    ///
+    /// let law = LawKind::Formula(Formula::named("weakening")?);
+    /// let numbers = [("mu0", 0.5), ("v_s", 0.5), ("alpha_v", -0.33), ("tau", 4.15)];
+    /// let setting = Setting::checked(numbers, Some(law), &[Parameter::V0])?;
+    /// let found = VcProblem::of(&setting)?.find(Protocol::Follow);
+    /// assert!(found.critical.vc > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the setting has no friction law, or a value is outside the model's range: a gain needs a
+    /// delay τ > 0.
+    pub fn of(setting: &Setting) -> Result<Self, ModelError> {
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
+        let oscillator = setting.oscillator()?;
+        let units = CaseUnits::of(&oscillator);
+        let Some(law) = setting.friction_law()? else {
+            return Err(ModelError::of_law("a friction law"));
+        };
+        let feedback = setting.feedback();
+        let tau = feedback.tau;
+        ModelError::check(
+            "tau",
+            tau,
+            "greater than 0 where a gain acts",
+            tau > 0.0 || !feedback.gains.act(),
+        )?;
+        let problem = Problem {
+            velocity_unit: units.velocity,
+            ..Problem::new(law, feedback.dimensionless(&oscillator))
+        };
+        Ok(Self { problem, units })
+    }
 
-impl Asked {
     /// The same problem with a `stop`: once it is set, answers come soon but are meaningless.
     #[must_use]
     pub fn until(mut self, stop: Stop) -> Self {

@@ -120,7 +120,7 @@ mod follow;
 pub mod limit;
 mod memoryless;
 mod observers;
-pub(crate) mod options;
+pub mod options;
 mod problem;
 mod ramp;
 mod regime;

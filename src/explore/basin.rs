@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use serde::Serialize;
 
-use crate::answers::basin::{Asked, Place, Region, STUDENT_95, Tally};
+use crate::answers::basin::{BasinProblem, Place, Region, STUDENT_95, Tally};
 use crate::setting::Setting;
 use crate::setting::basin::{Basin, SCRAMBLINGS};
 use crate::setting::simulation::Simulation;
@@ -30,7 +30,7 @@ pub enum BasinError {
 #[derive(Debug, Clone)]
 pub struct Followed {
     basin: Basin,
-    asked: Asked,
+    asked: BasinProblem,
     outcomes: Vec<Outcome>,
 }
 
@@ -46,7 +46,7 @@ impl Followed {
         basin: &Basin,
         threads: usize,
     ) -> Result<Self, BasinError> {
-        let asked = Asked::of(setting, simulation, basin)?.ok_or(BasinError::NoLaw)?;
+        let asked = BasinProblem::of(setting, simulation, basin)?.ok_or(BasinError::NoLaw)?;
         let begin = || (asked.follower(), None);
         let places: Vec<Place> = asked.places().collect();
         let outcomes = each(places, threads, begin, |(follower, motion), place| {

@@ -209,4 +209,37 @@ mod tests {
             assert!(parameter.check(to + to.abs() * 1e-12 + 1e-13).is_err());
         }
     }
+
+    /// The page sets as many parameters of a law as that needs. It begins within their ranges.
+    #[test]
+    fn the_page_offers_what_laws_need() {
+        let known = Known::all();
+        let offered = |name: &str| {
+            let mut all = known.parameters.iter();
+            all.any(|known| known.name == name && known.page.is_some())
+        };
+        for law in known.laws.iter().filter(|law| law.motions) {
+            let those = law.parameters.iter().filter(|name| offered(name));
+            assert_eq!(those.count(), law.needed, "{}", law.name);
+        }
+        let mut pages = 0;
+        for known in &known.parameters {
+            let Some(page) = &known.page else { continue };
+            pages += 1;
+            let [low, high] = known.range;
+            let first = page.first.or(known.default).expect("a value at first");
+            for value in [page.slider, page.axis].concat().into_iter().chain([first]) {
+                assert!((low..=high).contains(&value), "{}: {value}", known.name);
+            }
+            for [from, to] in [page.slider, page.axis] {
+                assert!(from < to, "{}", known.name);
+            }
+            assert!(
+                (page.slider[0]..=page.slider[1]).contains(&first),
+                "{}",
+                known.name
+            );
+        }
+        assert!(pages > 10, "{pages}");
+    }
 }

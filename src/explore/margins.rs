@@ -1,9 +1,12 @@
 //! How far a setting is from the boundary of stability, or from a decay rate that is required.
+//!
+//! A limit that is not lost is infinite here, and NaN where it was not decided or not searched for;
+//! JSON has null for both.
 
 use serde::Serialize;
 
 use super::stability::Stability;
-use crate::answers::margins::Around;
+use crate::answers::margins::SettingMargins;
 use crate::linear::margins::{Limits, MarginSearch, Radius};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
@@ -138,7 +141,7 @@ impl Margins {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Option<Self>, ModelError> {
-        let Some(around) = Around::of(setting, decay)? else {
+        let Some(around) = SettingMargins::of(setting, decay)? else {
             return Ok(None);
         };
         let around = around.heeding(stop);
@@ -209,7 +212,7 @@ impl Margins {
         }
     }
 
-    fn fill(&mut self, around: &Around, setting: &Setting) {
+    fn fill(&mut self, around: &SettingMargins, setting: &Setting) {
         let mut search = MarginSearch::default();
         let gain = around.gain(&mut search);
         self.note("gain_margin", &[gain.lower, gain.upper]);

@@ -1,4 +1,6 @@
 //! The critical velocity at a point of parameter space.
+//!
+//! What does not exist or is not known is NaN here, and null in JSON.
 
 use std::collections::BTreeMap;
 
@@ -61,7 +63,9 @@ impl CriticalVelocity {
     /// # Errors
     /// When the setting has no friction law, or a value is outside the model's range.
     pub fn of(setting: &Setting, protocol: Protocol, stop: &Stop) -> Result<Self, ModelError> {
-        let found = vc::asked(setting)?.until(stop.clone()).find(protocol);
+        let found = vc::VcProblem::of(setting)?
+            .until(stop.clone())
+            .find(protocol);
         let critical = found.critical;
         Ok(Self {
             vc: critical.vc,
@@ -83,7 +87,7 @@ impl CriticalVelocity {
 /// The limit of a short delay: its parameters, and the fields of its maps by their names.
 #[derive(Debug, Clone, Serialize)]
 pub struct ShortDelay {
-    /// `LIMIT`.
+    /// `limit`.
     pub protocol: &'static str,
     /// γ.
     pub gamma: f64,

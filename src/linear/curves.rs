@@ -47,9 +47,9 @@ pub enum CurveKind {
 
 impl CurveKind {
     /// The kinds of curves.
-    pub(crate) const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
+    pub const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
 
-    /// Its place in `CurveKind::ALL`.
+    /// Its place in [`CurveKind::ALL`].
     #[must_use]
     pub const fn number(self) -> i8 {
         self as i8

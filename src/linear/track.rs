@@ -19,7 +19,7 @@ use super::spectrum::RootFinder;
 use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
 
 /// Most roots that can be reported for a cell, pairs counted once.
-pub(crate) const MOST_ROOTS: usize = 8;
+pub const MOST_ROOTS: usize = 8;
 /// Tracking starts anew at delays whose index on the line is a multiple of this.
 pub const BLOCK: usize = 4096;
 /// The margin of the certificate, but for nearly multiple roots.
@@ -134,7 +134,7 @@ pub struct RootTracker {
 }
 
 impl RootTracker {
-    /// A tracker that reports the `wanted` rightmost roots of each cell, 1 to `MOST_ROOTS`.
+    /// A tracker that reports the `wanted` rightmost roots of each cell, 1 to [`MOST_ROOTS`].
     #[must_use]
     pub fn new(wanted: usize) -> Self {
         Self {

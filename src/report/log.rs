@@ -18,7 +18,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// One line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LogLine {
+pub struct LogLine {
     /// When, RFC 3339 in UTC.
     pub time: String,
     /// What happened.
@@ -29,7 +29,7 @@ pub(crate) struct LogLine {
 /// The contents of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
-pub(crate) enum Entry {
+pub enum Entry {
     /// A run starts.
     Started {
         /// The shard, I/N.
@@ -78,7 +78,7 @@ pub(crate) enum Entry {
 }
 
 /// Writes the log of one run. A log that cannot be written does not stop the run.
-pub(crate) struct Log {
+pub struct Log {
     file: RefCell<Option<File>>,
     shard: Shard,
     start: Cell<Instant>,
@@ -90,7 +90,7 @@ pub(crate) struct Log {
 
 /// The log of a shard of `map`.
 #[must_use]
-pub(crate) fn path(map: &Path, shard: Shard) -> PathBuf {
+pub fn path(map: &Path, shard: Shard) -> PathBuf {
     let mut name = map.file_name().unwrap_or_default().to_owned();
     if !shard.is_whole() {
         let (number, of) = shard.numbers();
@@ -103,7 +103,7 @@ pub(crate) fn path(map: &Path, shard: Shard) -> PathBuf {
 impl Log {
     /// A log beside `map`; an existing one is appended to.
     #[must_use]
-    pub(crate) fn beside(map: &Path, shard: Shard) -> Self {
+    pub fn beside(map: &Path, shard: Shard) -> Self {
         let path = path(map, shard);
         Self {
             // A link or a folder with this name is left alone.
@@ -118,7 +118,7 @@ impl Log {
     }
 
     /// Records that the run ended before it was finished.
-    pub(crate) fn ended(&self, why: &str) {
+    pub fn ended(&self, why: &str) {
         // A run that was refused at the start is not logged.
         if !self.begun.get() {
             return;
@@ -195,7 +195,7 @@ impl Observer for Log {
 }
 
 /// Sends events both to the terminal and to the log.
-pub(crate) struct Both<'a>(pub &'a Progress, pub &'a Log);
+pub struct Both<'a>(pub &'a Progress, pub &'a Log);
 
 impl Observer for Both<'_> {
     fn event(&self, event: &Event) {

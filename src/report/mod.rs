@@ -11,13 +11,13 @@
 
 mod known;
 #[cfg(feature = "cli")]
-pub(crate) mod log;
-pub(crate) mod numbers;
+pub mod log;
+pub mod numbers;
 #[cfg(feature = "picture")]
-pub(crate) mod picture;
+pub mod picture;
 pub mod preview;
 #[cfg(feature = "cli")]
-pub(crate) mod progress;
+pub mod progress;
 #[cfg(feature = "cli")]
-pub(crate) mod table;
-pub(crate) mod visible;
+pub mod table;
+pub mod visible;

@@ -9,14 +9,14 @@ const LAST_SECOND: u64 = 253_402_300_799;
 
 /// The time nearest to `time` that can be written as text: from 1970 to the end of 9999.
 #[must_use]
-pub(crate) fn representable(time: SystemTime) -> SystemTime {
+pub fn representable(time: SystemTime) -> SystemTime {
     let last = UNIX_EPOCH + Duration::from_secs(LAST_SECOND);
     time.clamp(UNIX_EPOCH, last)
 }
 
 /// A count with thin spaces between groups of three digits: 8 658 009.
 #[must_use]
-pub(crate) fn grouped(n: u64) -> String {
+pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (i, digit) in digits.chars().enumerate() {
@@ -30,7 +30,7 @@ pub(crate) fn grouped(n: u64) -> String {
 
 /// A quantity with a decimal prefix and three digits: "12.3 M".
 #[must_use]
-pub(crate) fn prefixed(value: f64) -> String {
+pub fn prefixed(value: f64) -> String {
     for (size, prefix) in [(1e12, " T"), (1e9, " G"), (1e6, " M"), (1e3, " k")] {
         if value >= size {
             return format!("{}{prefix}", three_digits(value / size));
@@ -49,7 +49,7 @@ fn three_digits(value: f64) -> String {
 
 /// Bytes with a decimal prefix: "12.3 MB".
 #[must_use]
-pub(crate) fn bytes(n: u64) -> String {
+pub fn bytes(n: u64) -> String {
     if n < 1000 {
         format!("{n} B")
     } else {
@@ -59,7 +59,7 @@ pub(crate) fn bytes(n: u64) -> String {
 
 /// A duration in readable units: "0.12 s", "3 min 20 s", "5 h 12 min", "3 years".
 #[must_use]
-pub(crate) fn seconds(s: f64) -> String {
+pub fn seconds(s: f64) -> String {
     let whole = s.round() as u64;
     match whole {
         0..60 if s < 9.995 => format!("{s:.2} s"),
@@ -79,7 +79,7 @@ const LONGEST: u64 = 1000 * YEAR;
 
 /// A number in full where that is short, else with four digits.
 #[must_use]
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let plain = format!("{value}");
     if plain.len() <= 8 {
         plain
@@ -91,7 +91,7 @@ pub(crate) fn short(value: f64) -> String {
 /// A number with at most `digits` digits after its first one. Nine digits in all are the same on
 /// every machine.
 #[must_use]
-pub(crate) fn rounded(value: f64, digits: usize) -> String {
+pub fn rounded(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.digits$e}").parse::<f64>();
     Shown(rounded.unwrap_or(value)).to_string()
 }
@@ -99,7 +99,7 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
 /// A bound with at most `digits` digits after its first one, rounded up or down: outwards, so that
 /// it stays a bound.
 #[must_use]
-pub(crate) fn bound(value: f64, digits: usize, up: bool) -> String {
+pub fn bound(value: f64, digits: usize, up: bool) -> String {
     let text = format!("{value:.digits$e}");
     let near = text.parse::<f64>().unwrap_or(value);
     let inside = if up { near < value } else { near > value };
@@ -114,14 +114,14 @@ pub(crate) fn bound(value: f64, digits: usize, up: bool) -> String {
 
 /// A count of things with regular plurals: "1 plane", "12 000 planes".
 #[must_use]
-pub(crate) fn counted(n: u64, thing: &str) -> String {
+pub fn counted(n: u64, thing: &str) -> String {
     let plural = if n == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(n))
 }
 
 /// A unit to follow a number, after a space; empty for "1".
 #[must_use]
-pub(crate) fn unit_behind(unit: &str) -> String {
+pub fn unit_behind(unit: &str) -> String {
     match unit {
         "" | "1" => String::new(),
         unit => format!(" {unit}"),

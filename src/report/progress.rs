@@ -14,7 +14,7 @@ use crate::sweep::{Event, Observer};
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// Shows the events of a sweep on standard error.
-pub(crate) struct Progress {
+pub struct Progress {
     bar: ProgressBar,
     /// The time when computing began.
     start: Cell<Instant>,
@@ -29,7 +29,7 @@ pub(crate) struct Progress {
 impl Progress {
     /// Progress on standard error; `quiet` shows nothing.
     #[must_use]
-    pub(crate) fn new(quiet: bool) -> Self {
+    pub fn new(quiet: bool) -> Self {
         let bar = if quiet {
             ProgressBar::hidden()
         } else {
@@ -48,18 +48,18 @@ impl Progress {
 
     /// Seconds since the computing began.
     #[must_use]
-    pub(crate) fn elapsed(&self) -> f64 {
+    pub fn elapsed(&self) -> f64 {
         self.start.get().elapsed().as_secs_f64()
     }
 
     /// Cells that this run has computed.
     #[must_use]
-    pub(crate) fn computed(&self) -> u64 {
+    pub fn computed(&self) -> u64 {
         self.done.get()
     }
 
     /// Removes the bar from the terminal.
-    pub(crate) fn clear(&self) {
+    pub fn clear(&self) {
         self.bar.finish_and_clear();
     }
 

@@ -3,7 +3,7 @@
 /// A text in which control characters are spelled out, except tabs and line ends. So are characters
 /// that change the direction of writing or end a line invisibly. None of them reaches the terminal.
 #[must_use]
-pub(crate) fn visible(text: &str) -> String {
+pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -20,13 +20,13 @@ const LONGEST: usize = 4000;
 
 /// A text on one line, with control characters spelled out, and cut if it is too long to read.
 #[must_use]
-pub(crate) fn visible_line(text: &str) -> String {
+pub fn visible_line(text: &str) -> String {
     visible(&shortened(text)).replace('\n', "\\n")
 }
 
 /// The beginning of a text that is too long for a message, or all of it.
 #[must_use]
-pub(crate) fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
+pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &text[..end]).into(),
         None => text.into(),
@@ -35,7 +35,7 @@ pub(crate) fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
 
 /// JSON in which such characters are escaped. They occur only inside its strings.
 #[must_use]
-pub(crate) fn visible_json(json: &str) -> String {
+pub fn visible_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
     for c in json.chars() {
         match c.is_control() || is_unseen(c) {

@@ -47,7 +47,7 @@ use std::sync::Arc;
 use access::{Access, Hosts};
 use connections::Listener;
 use maps::Maps;
-pub(crate) use maps::{ReaderCommand, read_map};
+pub use maps::{ReaderCommand, read_map};
 use work::Work;
 
 /// Threads that may wait for files and processes.
@@ -55,7 +55,7 @@ const BESIDES: usize = 6;
 
 /// Where a server listens.
 #[derive(Debug, Clone)]
-pub(crate) enum Place {
+pub enum Place {
     /// At an address of this machine.
     Address {
         /// The address.
@@ -75,7 +75,7 @@ pub(crate) enum Place {
 
 /// The options of a server.
 #[derive(Debug, Clone)]
-pub(crate) struct Serving {
+pub struct Serving {
     /// Where it listens.
     pub place: Place,
     /// Number of threads that compute what is quick, and as many for what is slow.
@@ -96,7 +96,7 @@ enum Bound {
 
 /// A server that is listening.
 #[derive(Debug)]
-pub(crate) struct Server {
+pub struct Server {
     bound: Bound,
     address: SocketAddr,
     access: Arc<Access>,
@@ -109,7 +109,7 @@ impl Server {
     ///
     /// # Errors
     /// When the system gives no such port or socket, or no random numbers.
-    pub(crate) fn listen(serving: &Serving) -> std::io::Result<Self> {
+    pub fn listen(serving: &Serving) -> std::io::Result<Self> {
         let (bound, address, hosts) = match &serving.place {
             &Place::Address { address, port } => {
                 let listener = TcpListener::bind((address, port))?;
@@ -142,7 +142,7 @@ impl Server {
     /// The link that opens the page; whoever has it may use the server. For a socket it leads to
     /// the near end of a tunnel.
     #[must_use]
-    pub(crate) fn link(&self) -> String {
+    pub fn link(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
             // The server listens at all addresses; a browser on this machine can use this one.
@@ -155,7 +155,7 @@ impl Server {
     ///
     /// # Errors
     /// When the system cannot start threads.
-    pub(crate) fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
+    pub fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
             .max_blocking_threads(work::most(self.threads) + BESIDES)

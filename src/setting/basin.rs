@@ -12,13 +12,13 @@ use crate::text::toml_reader::{Entry, SpecError};
 
 /// Independent scramblings of the sequence of starts. Their spread estimates the error of a share,
 /// to within 18 %.
-pub(crate) const SCRAMBLINGS: u32 = 16;
+pub const SCRAMBLINGS: u32 = 16;
 /// Starts of a cell if the sweep file gives no number.
 pub(crate) const STARTS: u32 = 256;
 /// The fewest starts: four in each scrambling.
-pub(crate) const FEWEST_STARTS: u32 = 4 * SCRAMBLINGS;
+pub const FEWEST_STARTS: u32 = 4 * SCRAMBLINGS;
 /// The most starts: 2¹⁶ in each scrambling, the length of the sequence.
-pub(crate) const MOST_STARTS: u32 = SCRAMBLINGS << 16;
+pub const MOST_STARTS: u32 = SCRAMBLINGS << 16;
 
 /// What the starts are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,11 +48,12 @@ impl Over {
 pub struct Basin {
     /// What the starts are.
     pub over: Over,
-    /// How many are followed: a power of two between `FEWEST_STARTS` and `MOST_STARTS`.
+    /// How many are followed: a power of two between [`FEWEST_STARTS`] and [`MOST_STARTS`].
     pub starts: u32,
-    /// The range of ẋ at t = 0; none: see `Basin::velocities`.
+    /// The range of ẋ at t = 0; none for the range by default of the setting.
     pub x_dot0: Option<[f64; 2]>,
-    /// The range of the elongation at t = 0 and before; none: see `Basin::elongations`.
+    /// The range of the elongation at t = 0 and before; none for the range
+    /// by default of the setting.
     pub a0: Option<[f64; 2]>,
 }
 

@@ -70,7 +70,7 @@ pub struct CaseSpec {
     pub setting: Setting,
     /// The motion.
     pub case: Case,
-    /// Whether the file gives no start. The block then starts faster than sliding by `DISTURBED`:
+    /// Whether the file gives no start. The block then starts faster than sliding by [`DISTURBED`]:
     /// exactly in equilibrium it would stay there, stable or not.
     pub start_assumed: bool,
     /// End of the trace, in time; none for the time when the outcome is known.

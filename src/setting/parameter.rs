@@ -168,11 +168,11 @@ catalogue! {
                 help: "μ_K′(v0), slope of the friction coefficient at the sliding velocity",
             }),
             page: Some(Page {
-first: Some(-0.3),
-slider: [-0.95, 0.5],
-axis: [-0.95, 0.2],
-..PAGE
-}),
+                first: Some(-0.3),
+                slider: [-0.95, 0.5],
+                axis: [-0.95, 0.2],
+                ..PAGE
+            }),
             ..ROW
         };
         /// α_v, the gain of velocity control.
@@ -188,11 +188,11 @@ axis: [-0.95, 0.2],
                 help: "α_v, gain of velocity control [default: 0]",
             }),
             page: Some(Page {
-first: Some(-0.33),
-slider: [-3.0, 3.0],
-axis: [-1.6, 0.4],
-..PAGE
-}),
+                first: Some(-0.33),
+                slider: [-3.0, 3.0],
+                axis: [-1.6, 0.4],
+                ..PAGE
+            }),
             ..ROW
         };
         /// α_N, the gain of load control.
@@ -208,11 +208,11 @@ axis: [-1.6, 0.4],
                 help: "α_N, gain of load control [default: 0]",
             }),
             page: Some(Page {
-first: Some(-2.0),
-slider: [-10.0, 10.0],
-axis: [-3.0, 1.0],
-..PAGE
-}),
+                first: Some(-2.0),
+                slider: [-10.0, 10.0],
+                axis: [-3.0, 1.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// τ, the delay.
@@ -227,11 +227,11 @@ axis: [-3.0, 1.0],
                 help: "τ, delay of the feedback",
             }),
             page: Some(Page {
-first: Some(4.15),
-slider: [0.0, 25.0],
-axis: [0.0, 12.0],
-..PAGE
-}),
+                first: Some(4.15),
+                slider: [0.0, 25.0],
+                axis: [0.0, 12.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// v0, the unperturbed pulling velocity.
@@ -246,11 +246,11 @@ axis: [0.0, 12.0],
                 help: "v0, pulling velocity (with --friction)",
             }),
             page: Some(Page {
-first: Some(0.35),
-slider: [0.01, 3.0],
-axis: [0.02, 2.0],
-..PAGE
-}),
+                first: Some(0.35),
+                slider: [0.01, 3.0],
+                axis: [0.02, 2.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
@@ -265,11 +265,11 @@ axis: [0.02, 2.0],
                 help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]",
             }),
             page: Some(Page {
-slider: [0.05, 2.0],
-axis: [0.05, 2.0],
-folded: Some(Folded::Model),
-..PAGE
-}),
+                slider: [0.05, 2.0],
+                axis: [0.05, 2.0],
+                folded: Some(Folded::Model),
+                ..PAGE
+            }),
             ..ROW
         };
         /// M, the mass of the block.
@@ -284,11 +284,11 @@ folded: Some(Folded::Model),
                 help: "M, mass [default: 1]",
             }),
             page: Some(Page {
-slider: [0.1, 10.0],
-axis: [0.2, 5.0],
-folded: Some(Folded::Model),
-..PAGE
-}),
+                slider: [0.1, 10.0],
+                axis: [0.2, 5.0],
+                folded: Some(Folded::Model),
+                ..PAGE
+            }),
             ..ROW
         };
         /// κ, the stiffness of the spring.
@@ -303,11 +303,11 @@ folded: Some(Folded::Model),
                 help: "κ, stiffness [default: 1]",
             }),
             page: Some(Page {
-slider: [0.1, 10.0],
-axis: [0.2, 5.0],
-folded: Some(Folded::Model),
-..PAGE
-}),
+                slider: [0.1, 10.0],
+                axis: [0.2, 5.0],
+                folded: Some(Folded::Model),
+                ..PAGE
+            }),
             ..ROW
         };
         /// N0, the unperturbed normal load.
@@ -322,11 +322,11 @@ folded: Some(Folded::Model),
                 help: "N0, normal load [default: 1]",
             }),
             page: Some(Page {
-slider: [0.1, 10.0],
-axis: [0.2, 5.0],
-folded: Some(Folded::Model),
-..PAGE
-}),
+                slider: [0.1, 10.0],
+                axis: [0.2, 5.0],
+                folded: Some(Folded::Model),
+                ..PAGE
+            }),
             ..ROW
         };
         /// R, the memory of the feedback.
@@ -341,11 +341,11 @@ folded: Some(Folded::Model),
                 help: "R, share of the feedback fed back again one delay later [default: 0]",
             }),
             page: Some(Page {
-slider: [-0.95, 0.95],
-axis: [-0.9, 0.9],
-folded: Some(Folded::Feedback),
-..PAGE
-}),
+                slider: [-0.95, 0.95],
+                axis: [-0.9, 0.9],
+                folded: Some(Folded::Feedback),
+                ..PAGE
+            }),
             ..ROW
         };
         /// δ, the latency of the feedback.
@@ -358,11 +358,11 @@ folded: Some(Folded::Feedback),
                 help: "δ, latency: time until the feedback acts [default: 0]",
             }),
             page: Some(Page {
-slider: [0.0, 5.0],
-axis: [0.0, 2.0],
-folded: Some(Folded::Feedback),
-..PAGE
-}),
+                slider: [0.0, 5.0],
+                axis: [0.0, 2.0],
+                folded: Some(Folded::Feedback),
+                ..PAGE
+            }),
             ..LAG
         };
         /// T_a, the lag of the load behind its command.
@@ -375,11 +375,11 @@ folded: Some(Folded::Feedback),
                 help: "T_a, time constant with which the load follows its command [default: 0]",
             }),
             page: Some(Page {
-slider: [0.0, 2.0],
-axis: [0.0, 1.0],
-folded: Some(Folded::Feedback),
-..PAGE
-}),
+                slider: [0.0, 2.0],
+                axis: [0.0, 1.0],
+                folded: Some(Folded::Feedback),
+                ..PAGE
+            }),
             ..LAG
         };
         /// T_v, the lag of the pulling velocity behind its command.
@@ -392,11 +392,11 @@ folded: Some(Folded::Feedback),
                 help: "T_v, time constant with which the velocity follows its command [default: 0]",
             }),
             page: Some(Page {
-slider: [0.0, 2.0],
-axis: [0.0, 1.0],
-folded: Some(Folded::Feedback),
-..PAGE
-}),
+                slider: [0.0, 2.0],
+                axis: [0.0, 1.0],
+                folded: Some(Folded::Feedback),
+                ..PAGE
+            }),
             ..LAG
         };
         /// T_s, the lag of the sensor behind the elongation.
@@ -409,11 +409,11 @@ folded: Some(Folded::Feedback),
                 help: "T_s, time constant with which the sensor follows elongation [default: 0]",
             }),
             page: Some(Page {
-slider: [0.0, 2.0],
-axis: [0.0, 1.0],
-folded: Some(Folded::Feedback),
-..PAGE
-}),
+                slider: [0.0, 2.0],
+                axis: [0.0, 1.0],
+                folded: Some(Folded::Feedback),
+                ..PAGE
+            }),
             ..LAG
         };
         /// μ0 of a friction law.
@@ -427,11 +427,11 @@ folded: Some(Folded::Feedback),
                 help: "μ0 of the friction law",
             }),
             page: Some(Page {
-first: Some(0.5),
-slider: [0.05, 1.0],
-axis: [0.05, 1.0],
-..PAGE
-}),
+                first: Some(0.5),
+                slider: [0.05, 1.0],
+                axis: [0.05, 1.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// v_s of a friction law.
@@ -446,11 +446,11 @@ axis: [0.05, 1.0],
                 help: "v_s of the friction law",
             }),
             page: Some(Page {
-first: Some(0.5),
-slider: [0.02, 4.0],
-axis: [0.05, 2.0],
-..PAGE
-}),
+                first: Some(0.5),
+                slider: [0.02, 4.0],
+                axis: [0.05, 2.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
@@ -544,10 +544,10 @@ axis: [0.05, 2.0],
                 help: "μ_S, static friction coefficient [default: 1]",
             }),
             page: Some(Page {
-slider: [0.1, 2.0],
-axis: [0.2, 2.0],
-..PAGE
-}),
+                slider: [0.1, 2.0],
+                axis: [0.2, 2.0],
+                ..PAGE
+            }),
             ..ROW
         };
         /// ẋ at t = 0.

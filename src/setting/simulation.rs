@@ -44,7 +44,7 @@ pub struct Simulation {
 
 /// The disturbance of a motion without a given start: exactly in equilibrium a block would stay
 /// there, stable or not.
-pub(crate) const DISTURBED: f64 = 0.01;
+pub const DISTURBED: f64 = 0.01;
 
 impl Default for Simulation {
     fn default() -> Self {

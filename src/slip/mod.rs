@@ -18,6 +18,6 @@ mod graze;
 mod history;
 pub mod motion;
 pub mod outcome;
-pub(crate) mod sliding;
+pub mod sliding;
 pub mod step;
 pub mod watch;

@@ -221,7 +221,7 @@ impl MapFile {
         self.axes.iter().map(|a| a.values.len() as u64).product()
     }
 
-    /// A text attribute of the root, see `schema::root`; none where it is missing.
+    /// A text attribute of the root by its name in files; none where it is missing.
     #[must_use]
     pub fn root_text(&self, name: &str) -> Option<String> {
         text(&self.file, name).ok()

@@ -32,7 +32,7 @@ use crate::sweep::described::{Described, Variable};
 use crate::sweep::plan::tile::Tile;
 use crate::text::in_hexadecimal;
 
-/// A map that is being written. `MapWriter::finish` gives it its final name; dropped before that,
+/// A map that is being written. [`MapWriter::finish`] gives it its final name; dropped before that,
 /// it is removed.
 pub struct MapWriter<'p> {
     plan: &'p Plan,
@@ -76,7 +76,7 @@ impl<'p> MapWriter<'p> {
     ///
     /// # Errors
     /// When the system or the library refuses.
-    pub(crate) fn create(
+    pub fn create(
         plan: &'p Plan,
         output: Output,
         provenance: &Provenance,
@@ -176,7 +176,7 @@ impl<'p> MapWriter<'p> {
     /// # Errors
     /// When `stop` is set, or the system or the library refuses. The final name then has what it
     /// had before.
-    pub(crate) fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
+    pub fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
         let mut close = || -> hdf5::Result<()> {
             self.put_summary()?;

@@ -8,7 +8,7 @@ use super::durable::{rename_synced, sync};
 use super::error::StoreError;
 use super::lock;
 
-/// The place of a map that is being written. If dropped before `Output::commit`, it leaves
+/// The place of a map that is being written. If dropped before [`Output::commit`], it leaves
 /// nothing behind.
 #[derive(Debug)]
 pub struct Output {
@@ -86,7 +86,7 @@ impl Output {
     ///
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.
-    pub(crate) fn commit(self) -> Result<(), StoreError> {
+    pub fn commit(self) -> Result<(), StoreError> {
         if let Ok(replaced) = self.path.metadata() {
             let mode = replaced.permissions();
             fs::set_permissions(&self.part, mode).map_err(StoreError::io("write", &self.path))?;

@@ -12,7 +12,7 @@ const PATCHES: [(&str, usize, usize); 4] = [
     // A row that picks a number which motions have.
     ("field", 1, 10),
     // A row.
-    ("parameter", 1, 11),
+    ("parameter", 1, 12),
     // Its file: value, slope, bounds and series; its line; its row.
     ("law", 3, 75),
     // Its file; its line in the list, its `mod` and its row.

@@ -107,7 +107,7 @@ fn nor_where_sliding_is_stable_there() {
     let mut stable = 0;
     for index in cells(&plan) {
         let setting = plan.setting(&index);
-        let problem = vc::asked(&setting).unwrap().problem;
+        let problem = vc::VcProblem::of(&setting).unwrap().problem;
         if problem.count(0.1).stable() {
             stable += 1;
             let outcome = followed(&plan, &index, 3000.0).outcome;
@@ -125,7 +125,7 @@ fn nor_where_sliding_is_stable_there() {
         a0: 0.5 / 1.2,
     };
     assert_eq!(case.run(&mut ()).unwrap().outcome, Outcome::Sliding);
-    let problem = vc::asked(&setting).unwrap().problem;
+    let problem = vc::VcProblem::of(&setting).unwrap().problem;
     // By brute force, at α_v = −0.316 and τ = 4.3: v0 raised in small steps by a program of its
     // own.
     let found = critical_velocity(&problem);
@@ -146,7 +146,7 @@ fn share(text: &str, v0: f64, points: u32) -> f64 {
     for index in cells(&plan) {
         all += 1.0;
         let setting = plan.setting(&index);
-        let asked = vc::asked(&setting).unwrap();
+        let asked = vc::VcProblem::of(&setting).unwrap();
         // Looking for v_c takes long, and is in vain where sliding is unstable.
         if !asked.problem.count(v0).stable() {
             continue;
@@ -190,7 +190,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
 }
 
 /// "As a rule of thumb we found that in the case of pure velocity control the sticking time has to
-/// be of the same order or less than the slipping time." Around the gain and the delay at which
+/// be of the same order or less than the slipping time." SettingMargins the gain and the delay at which
 /// velocity control smooths the lowest velocities, these are no lower than where the uncontrolled
 /// block sticks twice as long as it slips; load control smooths those with tens of times. The
 /// lowest velocity is that of brute force at α_v = −0.38, τ = 4.25, the ratio there that of SciPy's

@@ -20,12 +20,12 @@ mod ramp;
 mod switch_on;
 mod transition;
 
-pub(crate) use along_delay::AlongDelayOptions;
-pub(crate) use bracket::BracketOptions;
+pub use along_delay::AlongDelayOptions;
+pub use bracket::BracketOptions;
 pub use continuation::ContinuationOptions;
 pub use ramp::RampOptions;
-pub(crate) use switch_on::SwitchOnOptions;
-pub(crate) use transition::TransitionOptions;
+pub use switch_on::SwitchOnOptions;
+pub use transition::TransitionOptions;
 
 /// All options of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

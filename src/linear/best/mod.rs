@@ -50,7 +50,7 @@ use crate::model::elementary::power;
 use crate::model::stop::Stop;
 
 /// Regions that are told; the others are counted.
-pub(crate) const MOST_REGIONS: usize = 64;
+pub const MOST_REGIONS: usize = 64;
 /// Regions whose optimum is looked for.
 const MOST_SEARCHED: usize = 4 * MOST_REGIONS;
 /// Lines of a region's lattice, and places on each of its stretches.
@@ -208,7 +208,7 @@ pub struct Best {
     /// roots decay by more than rounding can do to the abscissa; regions with the same best setting
     /// are one.
     pub regions: Vec<Region>,
-    /// Regions that are not told: those beyond the first `MOST_REGIONS`, those at which the work
+    /// Regions that are not told: those beyond the first [`MOST_REGIONS`], those at which the work
     /// of the search came to its bound, and those where roots decay by less than rounding can do to
     /// the abscissa, if at all.
     pub regions_left_out: usize,

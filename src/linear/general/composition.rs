@@ -1,5 +1,5 @@
-//! The compositions of D: of P and Q, of B and A, and of B and A with latency. Whatever depends on
-//! which it is asks here.
+//! The compositions of D: of P and Q, of B and A, and of B and A with latency. Lines, crossings and
+//! bounds ask here which it is; jets and counts right of a line tell a latency by themselves.
 
 use num_complex::Complex64;
 

@@ -8,7 +8,7 @@
 //! n(τ) = n(0⁺) + 2 Σ_j s_j #{k ≥ 0: τ_{j,k} < τ}                                             (5)
 //! ```
 //!
-//! n(0⁺) is found in `zero_delay`; (6) and (7) are in [`right_of`](super::right_of). Degenerate
+//! n(0⁺) is found in `zero_delay`; (6) and (7) are in `right_of`. Degenerate
 //! cases are answered one by one: a root at 0 for every delay, which a real root may pass once; a
 //! zero on the axis that P and Q share; zeros of P + Q on the axis, from which a pair starts at τ =
 //! 0.

@@ -6,7 +6,7 @@ use super::products::{product, sum_of_products};
 use crate::linear::rounded::Rounded;
 
 /// The largest degree of a polynomial here.
-pub(crate) const MOST_DEGREE: usize = 16;
+pub const MOST_DEGREE: usize = 16;
 const LENGTH: usize = MOST_DEGREE + 1;
 
 /// Σ c_k s^k, each c_k known to within e_k.
@@ -20,7 +20,7 @@ pub struct Polynomial {
     degree: usize,
 }
 
-/// A product or a power would have a larger degree than `MOST_DEGREE`.
+/// A product or a power would have a larger degree than [`MOST_DEGREE`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a polynomial of degree {degree}: at most {MOST_DEGREE} is allowed")]
 pub struct DegreeTooLarge {
@@ -48,7 +48,7 @@ impl Polynomial {
     /// The polynomial with these coefficients, from the constant on, each taken for exact.
     ///
     /// # Errors
-    /// When there are more of them than `MOST_DEGREE` + 1.
+    /// When there are more of them than [`MOST_DEGREE`] + 1.
     pub fn new(coefficients: &[f64]) -> Result<Self, DegreeTooLarge> {
         if coefficients.len() > LENGTH {
             return Err(DegreeTooLarge {

@@ -242,7 +242,7 @@ impl DelayLine {
         }
     }
 
-    /// The signed distance in τ to the nearest change of stability, see `MarginWalk::margin_at`.
+    /// The signed distance in τ to the nearest change of stability, see [`MarginWalk::margin_at`].
     #[must_use]
     pub fn delay_margin(&self, tau: f64) -> f64 {
         self.margins().margin_at(tau)

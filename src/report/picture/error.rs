@@ -7,7 +7,7 @@ use crate::store::StoreError;
 
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum PictureError {
+pub enum PictureError {
     /// The map could not be read, or the picture could not be written.
     #[error(transparent)]
     Store(#[from] StoreError),

@@ -19,7 +19,7 @@ const MOST_SHAPES: usize = 320;
 /// A picture that is drawn but not yet written to its file.
 #[derive(Debug)]
 #[must_use]
-pub(crate) struct Picture {
+pub struct Picture {
     bytes: Vec<u8>,
     path: PathBuf,
     origin: Origin,
@@ -56,7 +56,7 @@ impl Picture {
 
     /// The bytes of its file.
     #[must_use]
-    pub(crate) fn bytes(&self) -> &[u8] {
+    pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
@@ -64,7 +64,7 @@ impl Picture {
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub(crate) fn save(self) -> Result<(), PictureError> {
+    pub fn save(self) -> Result<(), PictureError> {
         let Self { bytes, path, .. } = self;
         let output = Output::claim(&path)?;
         fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
@@ -80,7 +80,7 @@ impl Picture {
     ///
     /// # Errors
     /// When something else is there, or the file cannot be written.
-    pub(crate) fn save_unasked(self) -> Result<(), PictureError> {
+    pub fn save_unasked(self) -> Result<(), PictureError> {
         match others_work(&self.path, &self.origin.of) {
             Some(holds) => Err(PictureError::OthersWork {
                 path: self.path,
@@ -107,7 +107,7 @@ fn others_work(path: &Path, origin: &str) -> Option<String> {
 /// The field that the sweep named for the PNG picture at `path` when it was drawn; empty where it
 /// named none. None where there is no picture by slipmap.
 #[must_use]
-pub(crate) fn named_in(path: &Path) -> Option<String> {
+pub fn named_in(path: &Path) -> Option<String> {
     texts(path).map(|texts| texts.named)
 }
 
@@ -147,7 +147,7 @@ fn texts(path: &Path) -> Option<Texts> {
 
 /// True for a file name that a picture can have.
 #[must_use]
-pub(crate) fn is_name(path: &Path) -> bool {
+pub fn is_name(path: &Path) -> bool {
     Format::of(path).is_ok()
 }
 

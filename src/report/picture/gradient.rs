@@ -6,7 +6,7 @@ use super::colour::Rgb;
 
 /// A colour map, with its name in matplotlib.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ColourMap {
+pub enum ColourMap {
     /// Dark purple, teal, yellow.
     Viridis,
     /// Dark blue, grey, yellow.
@@ -25,7 +25,7 @@ const USED: f64 = 0.8;
 
 impl ColourMap {
     /// All maps: those for sizes, then the two-sided ones.
-    pub(crate) const ALL: [Self; 5] = [
+    pub const ALL: [Self; 5] = [
         Self::Viridis,
         Self::Cividis,
         Self::Plasma,
@@ -35,7 +35,7 @@ impl ColourMap {
 
     /// The name.
     #[must_use]
-    pub(crate) const fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Viridis => "viridis",
             Self::Cividis => "cividis",
@@ -47,13 +47,13 @@ impl ColourMap {
 
     /// The map with this name.
     #[must_use]
-    pub(crate) fn from_name(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|map| map.name() == name)
     }
 
     /// Whether it is two-sided, with a colour for the middle.
     #[must_use]
-    pub(crate) const fn has_two_sides(self) -> bool {
+    pub const fn has_two_sides(self) -> bool {
         matches!(self, Self::BrBG | Self::PuOr)
     }
 

@@ -87,12 +87,12 @@ use crate::report::visible::visible_line;
 use crate::setting::CaseSpec;
 use crate::store::{MapFile, TraceFile};
 use choice::Choice;
-pub(crate) use error::PictureError;
+pub use error::PictureError;
 use file::{Format, Origin};
-pub(crate) use file::{Picture, is_name, named_in};
-pub(crate) use gradient::ColourMap;
-pub(crate) use options::{Named, PictureKind, PictureOptions};
-pub(crate) use roots::PointPicture;
+pub use file::{Picture, is_name, named_in};
+pub use gradient::ColourMap;
+pub use options::{Named, PictureKind, PictureOptions};
+pub use roots::PointPicture;
 use scene::Scene;
 use traced::Curves;
 use view::{MOST_PANELS, View};
@@ -103,11 +103,7 @@ use view::{MOST_PANELS, View};
 ///
 /// # Errors
 /// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
-pub(crate) fn draw(
-    map: &MapFile,
-    path: &Path,
-    options: &PictureOptions,
-) -> Result<Picture, PictureError> {
+pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
     apart(map.path(), path)?;
     options.check()?;
@@ -125,7 +121,7 @@ pub(crate) fn draw(
 ///
 /// # Errors
 /// When the name of the file is not that of a picture, or options have no meaning for a trace.
-pub(crate) fn draw_trace(
+pub fn draw_trace(
     (spec, trace): (&CaseSpec, &Trace),
     of: &Path,
     path: &Path,
@@ -148,7 +144,7 @@ pub(crate) fn draw_trace(
 ///
 /// # Errors
 /// As there, and when the picture would replace the trace.
-pub(crate) fn draw_trace_file(
+pub fn draw_trace_file(
     file: &TraceFile,
     path: &Path,
     options: &PictureOptions,
@@ -162,7 +158,7 @@ pub(crate) fn draw_trace_file(
 ///
 /// # Errors
 /// When the name of the file is not that of a picture.
-pub(crate) fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, PictureError> {
+pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
     let mut scene = Scene::new(PictureOptions::default().size);
     roots::draw(picture, &mut scene);

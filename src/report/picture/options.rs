@@ -12,7 +12,7 @@ const SIZES: RangeInclusive<u32> = 300..=5000;
 
 /// The kind of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PictureKind {
+pub enum PictureKind {
     /// The boundaries of stability as curves, one colour per value of the axis outside their plane,
     /// like Fig. 2 of the letter.
     Boundaries,
@@ -22,7 +22,7 @@ pub(crate) enum PictureKind {
 
 /// Where the default field of pictures of a map comes from: the `picture` key of a sweep file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Named {
+pub enum Named {
     /// The sweep in the map.
     InMap,
     /// A sweep file that may have changed since, which names this field.
@@ -39,7 +39,7 @@ impl From<Option<Field>> for Named {
 
 /// The options for drawing a map.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct PictureOptions {
+pub struct PictureOptions {
     /// The field to show. By default the one that the sweep names for pictures, else the first that
     /// the map has of: the regime of v0, the velocity above which sliding is smooth, the critical
     /// velocity, the outcome, the spectral abscissa, the number of unstable roots.

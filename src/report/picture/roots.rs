@@ -34,7 +34,7 @@ const FLAT: f64 = 1e-9;
 
 /// The data of a picture of a point.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PointPicture<'p> {
+pub struct PointPicture<'p> {
     /// The point, with the roots to draw.
     pub point: &'p BlockPoint,
     /// Its line of delays.

@@ -20,7 +20,7 @@ const MOST_TEXTS: usize = 1 << 16;
 ///
 /// # Errors
 /// When the map cannot be read or the text cannot be written, and once `stop` is set.
-pub(crate) fn write_cells(
+pub fn write_cells(
     map: &MapFile,
     (fields, held): (&[Field], &[Option<usize>]),
     comments: bool,

@@ -21,7 +21,7 @@ use crate::sweep::described::schema::DEGREE_OF_STABILITY;
 ///
 /// # Errors
 /// When the map cannot be read or the text cannot be written, and once `stop` is set.
-pub(crate) fn write_curves(
+pub fn write_curves(
     map: &MapFile,
     held: &[Option<usize>],
     comments: bool,

@@ -17,10 +17,10 @@ mod starts;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-pub(crate) use cells::write_cells;
-pub(crate) use curves::write_curves;
-pub(crate) use motion::{write_events, write_samples};
-pub(crate) use starts::write_starts;
+pub use cells::write_cells;
+pub use curves::write_curves;
+pub use motion::{write_events, write_samples};
+pub use starts::write_starts;
 
 use super::visible::visible_line;
 use crate::setting::quantity::Quantity;
@@ -29,7 +29,7 @@ use crate::store::StoreError;
 
 /// Why a table is not complete.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum TableError {
+pub enum TableError {
     /// The map could not be read.
     #[error(transparent)]
     Store(#[from] StoreError),

@@ -16,7 +16,7 @@ use crate::sweep::described::trace::{Quantity, TIME};
 ///
 /// # Errors
 /// When the text cannot be written, and once `stop` is set.
-pub(crate) fn write_samples(
+pub fn write_samples(
     (spec, trace): (&CaseSpec, &Trace),
     quantities: &[&Quantity],
     comments: bool,
@@ -48,7 +48,7 @@ pub(crate) fn write_samples(
 ///
 /// # Errors
 /// When the text cannot be written.
-pub(crate) fn write_events(
+pub fn write_events(
     (spec, trace): (&CaseSpec, &Trace),
     comments: bool,
     out: impl Write,

@@ -14,7 +14,7 @@ use crate::setting::{Field, Parameter};
 ///
 /// # Errors
 /// When the text cannot be written, and once `stop` is set.
-pub(crate) fn write_starts(
+pub fn write_starts(
     followed: &Followed,
     units: &Units,
     out: impl Write,

@@ -25,7 +25,7 @@ struct Opened {
 ///
 /// # Errors
 /// When a line cannot be read, or is no request.
-pub(crate) fn read_map<W: Write + Send + 'static>(
+pub fn read_map<W: Write + Send + 'static>(
     path: &Path,
     requests: impl BufRead,
     answers: W,

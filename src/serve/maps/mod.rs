@@ -35,7 +35,7 @@ mod scan;
 #[cfg(all(test, unix))]
 mod test_reader;
 
-pub(crate) use child::read_map;
-pub(crate) use process::ReaderCommand;
+pub use child::read_map;
+pub use process::ReaderCommand;
 pub(super) use readers::Maps;
 pub(super) use routes::routes;

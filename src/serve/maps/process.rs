@@ -18,7 +18,7 @@ const LONGEST_REQUEST: usize = 3000;
 
 /// How to start a process that reads a map: a program and its arguments, followed by the path.
 #[derive(Debug, Clone)]
-pub(crate) struct ReaderCommand {
+pub struct ReaderCommand {
     /// The program.
     pub program: std::path::PathBuf,
     /// The arguments.

@@ -4,7 +4,7 @@ import { GAINS } from "./catalogue.js";
 
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
-  // Of three that say the same, the page sets two.
+  // Of parameters that say the same, the page offers as many as a law needs.
   const described = (catalogue.law(state.law)?.parameters ?? []).filter(
     (name) => catalogue.about(name).page,
   );

@@ -29,7 +29,7 @@
 mod bounded;
 mod expression;
 mod file;
-pub(crate) mod parameter;
+pub mod parameter;
 mod part;
 pub mod shipped;
 mod tape;

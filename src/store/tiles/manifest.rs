@@ -43,9 +43,9 @@ fn checksum(text: &str) -> String {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// `TILES_FORMAT_VERSION`.
+    /// The version of the format of tiles.
     pub tiles_format_version: u32,
-    /// `schema::FORMAT_VERSION`.
+    /// The version of the format of maps.
     pub map_format_version: i32,
     /// Version of the program.
     pub program_version: String,

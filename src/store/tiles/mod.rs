@@ -20,7 +20,7 @@ pub(crate) mod manifest;
 pub(crate) mod reader;
 pub mod record;
 pub mod shards;
-pub(crate) mod survey;
+pub mod survey;
 
 pub use folder::TileFolder;
 pub use growing::GrowingMap;

@@ -2,7 +2,7 @@
 
 use super::buffers::TileBuffers;
 use super::line::SlowLine;
-use crate::answers::basin::{Asked, Tally};
+use crate::answers::basin::{BasinProblem, Tally};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
 use crate::setting::basin::Basin;
@@ -60,7 +60,7 @@ impl<'p> BasinColumns<'p> {
 
     /// The result of a cell; none after a stop.
     fn cell(&mut self, setting: &Setting, stop: &Stop) -> Option<Result<BasinCell, CaseError>> {
-        let asked = match Asked::of(setting, self.simulation, self.basin) {
+        let asked = match BasinProblem::of(setting, self.simulation, self.basin) {
             Ok(asked) => asked?,
             Err(error) => return Some(Err(error)),
         };

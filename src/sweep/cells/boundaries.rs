@@ -41,7 +41,7 @@ pub struct DegreeCurves {
 
 /// The place of the `number`-th plane of curves, as indices along every axis; 0 along its own two.
 #[must_use]
-pub(crate) fn plane(plan: &Plan, number: u64) -> Vec<usize> {
+pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.boundary_plane, number)
 }
 

@@ -2,7 +2,7 @@
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
-use crate::answers::margins::Around;
+use crate::answers::margins::SettingMargins;
 use crate::linear::margins::{Limits, LoopMargins, MarginSearch};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
@@ -79,9 +79,9 @@ impl MarginColumns {
     }
 
     fn at(&mut self, here: &Here, letter: bool, stop: &Stop) -> Found {
-        let around = Around::of(here.setting, 0.0);
+        let around = SettingMargins::of(here.setting, 0.0);
         // The line was accepted, so its parameters are within the model's range.
-        let Some(around) = around.ok().flatten().filter(Around::stable) else {
+        let Some(around) = around.ok().flatten().filter(SettingMargins::stable) else {
             return UNSTABLE;
         };
         let around = around.heeding(stop);

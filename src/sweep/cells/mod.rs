@@ -23,7 +23,7 @@
 mod any_plane;
 mod basin_columns;
 pub mod best_planes;
-pub(crate) mod boundaries;
+pub mod boundaries;
 pub mod buffers;
 mod families;
 mod general_columns;

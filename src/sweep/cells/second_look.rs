@@ -1,6 +1,6 @@
 //! Checks of a cell of a map by methods that did not compute it.
 
-use crate::answers::basin::{Asked, STUDENT_95, Tally};
+use crate::answers::basin::{BasinProblem, STUDENT_95, Tally};
 use crate::answers::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
@@ -209,7 +209,7 @@ fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
     let Some(basin) = &plan.spec.basin else {
         return Answer::Open;
     };
-    let Ok(Some(asked)) = Asked::of(setting, &plan.spec.simulation, basin) else {
+    let Ok(Some(asked)) = BasinProblem::of(setting, &plan.spec.simulation, basin) else {
         return Answer::Open;
     };
     // A share of 0 follows from the number of unstable roots, which is another question.
@@ -244,7 +244,7 @@ fn critical_velocity(
     if transition == Transition::LiftOff && !holds_liftoff {
         return Ok(Answer::Open);
     }
-    let asked = vc::asked(setting)?;
+    let asked = vc::VcProblem::of(setting)?;
     let found = CriticalVelocity {
         vc: (stored.value)(Field::Vc),
         vc_lower: f64::NAN,
@@ -277,7 +277,7 @@ fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answe
     if !told_here || matches!(phase, Phase::Worst(_)) || (stored.value)(Field::Outcome) != lost {
         return Ok(Answer::Open);
     }
-    let asked = vc::asked(setting)?;
+    let asked = vc::VcProblem::of(setting)?;
     let [below, above] = asked.survives_beside(vc, BESIDE, phase, Integrator::Collocation);
     Ok(match (below, above) {
         (Regime::Irregular | Regime::Undecided, _) => Answer::Open,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
-use crate::answers::vc::{self, Asked};
+use crate::answers::vc::{self, VcProblem};
 use crate::critical::along_delay::BLOCK;
 use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
@@ -33,7 +33,7 @@ pub(super) struct VcColumns {
 
 /// An answer, with its question.
 struct Known {
-    asked: Asked,
+    asked: VcProblem,
     phase: f64,
     found: CriticalWindows,
 }
@@ -94,7 +94,7 @@ impl VcColumns {
         let mut units = None;
         for i in block {
             setting.set(Parameter::Tau, line.delays[i]);
-            if let Ok(asked) = vc::asked(&setting) {
+            if let Ok(asked) = VcProblem::of(&setting) {
                 cells.push(i);
                 units = Some(asked.units);
                 problems.push(asked.until(line.stop.clone()).problem);
@@ -112,7 +112,7 @@ impl VcColumns {
         let found = vc::find_in_line(&problems, &units, || line.stopped());
         for ((i, problem), found) in cells.into_iter().zip(problems).zip(found) {
             self.known[i] = found.map(|found| Known {
-                asked: Asked { problem, units },
+                asked: VcProblem { problem, units },
                 phase,
                 found,
             });
@@ -121,7 +121,7 @@ impl VcColumns {
 
     /// The result of a cell, with its status.
     fn cell(&mut self, here: &Here, stop: &Stop) -> Result<(VcCell<'_>, u8), ModelError> {
-        let asked = vc::asked(here.setting)?.until(stop.clone());
+        let asked = VcProblem::of(here.setting)?.until(stop.clone());
         let protocol = self.search.protocol.at(here.setting);
         let v0 = here.setting.get(Parameter::V0);
         let (tolerance, with_regime, smooth) = (self.tolerance, self.with_regime, self.smooth);
@@ -155,7 +155,7 @@ impl VcColumns {
     /// The answer for the `i`-th cell of a line.
     fn found(
         &mut self,
-        asked: &Asked,
+        asked: &VcProblem,
         protocol: Protocol,
         phase: f64,
         i: usize,

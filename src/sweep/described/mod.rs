@@ -23,7 +23,7 @@ pub(crate) mod curves;
 pub mod group_names;
 pub mod root;
 pub(crate) mod schema;
-pub(crate) mod trace;
+pub mod trace;
 
 use super::plan::Plan;
 use crate::answers::trace::Trace;
@@ -91,7 +91,7 @@ pub struct Variable {
     pub dimensions: Vec<usize>,
     /// The element that stands for no value, where there can be such.
     pub fill: Option<f64>,
-    /// Its attributes. Where integers have a fill value, `FILL_VALUE` is added last if one is
+    /// Its attributes. Where integers have a fill value, `_FillValue` is added last if one is
     /// missing: with it, readers turn integers into floats.
     pub attributes: Vec<Attribute>,
     /// Its values, where they are known before anything is computed: coordinates and parameters.

@@ -19,7 +19,7 @@ const FLAG_FILL: u8 = 255;
 pub(crate) const BYTES_OF_A_SAMPLE: u64 = 8 * (1 + QUANTITIES.len() as u64) + 1;
 
 /// A quantity of a motion, one for each sample.
-pub(crate) struct Quantity {
+pub struct Quantity {
     /// Name in files.
     pub name: &'static str,
     /// Its meaning, in words.

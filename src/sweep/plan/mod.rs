@@ -8,8 +8,8 @@
 
 pub(crate) mod memory;
 pub mod pieces;
-pub(crate) mod planes_of_curves;
-pub(crate) mod tile;
+pub mod planes_of_curves;
+pub mod tile;
 mod tile_size;
 
 use std::borrow::Cow;

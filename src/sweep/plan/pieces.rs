@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A part of a sweep that is computed, stored and checked on its own. Each kind is numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Piece {
-    /// The curves of a plane, see `sweep::cells::boundaries::plane`.
+    /// The curves of a plane, see [`crate::sweep::cells::boundaries::plane`].
     Curves(u64),
     /// The best settings of a plane, see [`crate::sweep::cells::best_planes::best_plane`].
     Best(u64),
