@@ -4,7 +4,7 @@
 #   scripts/soak.sh [HOURS]
 #
 # The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/timed/faults.rs), every
-# loss of power (tests/files/crash.rs) and the memory of each command (tests/files/memory.rs), then in turn, with new seeds,
+# loss of power (tests/files/crash.rs) and the memory of each command (tests/guards/memory.rs), then in turn, with new seeds,
 # until the time is over (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, losses of power, motions and
 # critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
@@ -33,7 +33,7 @@ SLIPMAP_FAULTS=all tests --test timed faults::
 say "every loss of power"
 SLIPMAP_FAULTS=all tests --test files crash::
 say "memory of every command"
-SLIPMAP_MEMORY=all tests --test files memory:: -- --nocapture
+SLIPMAP_MEMORY=all tests --test guards memory:: -- --nocapture
 round=0
 while [ $SECONDS -lt $until ]; do
     round=$((round + 1))

@@ -29,7 +29,8 @@ pub(crate) struct Ended {
     pub end: End,
     /// Everything that it wrote, on either stream.
     pub said: Vec<u8>,
-    /// The most memory that it had at a time, bytes; 0 where it hung.
+    /// The most memory that it had at a time, bytes, or what this process had when it started it if
+    /// that is more; 0 where it hung.
     pub peak: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Files that somebody made to do harm, losses of power, and the memory of commands.
+//! Files that somebody made to do harm, and losses of power.
 //!
 //! No test here opens a map by slipmap's library: from then on HDF5 makes no external links in the
 //! whole process, and the tests make some.
@@ -22,4 +22,3 @@ mod server;
 
 mod crash;
 mod hostile;
-mod memory;

@@ -3,7 +3,6 @@
 //!
 //! `SLIPMAP_MEMORY=all` asks for every command over the shipped sweeps, a map of 10⁹ cells and
 //! 4,000 planes of curves as well.
-#![cfg(target_os = "linux")]
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
