@@ -50,8 +50,8 @@ impl VcProblem {
     /// ```
     ///
     /// # Errors
-    /// When the setting has no friction law, or a value is outside the model's range: a gain needs a
-    /// delay τ > 0.
+    /// When the setting has no friction law, or a value is outside the model's range: a gain needs
+    /// a delay τ > 0.
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
         setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
         let oscillator = setting.oscillator()?;
