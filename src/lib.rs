@@ -26,9 +26,9 @@
 //! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //!
-//! Beside them stands what belongs to the program alone: the claims of the letter, the command line.
-//! `cli`, the default, includes all features. With `default-features = false` the
-//! first five modules remain, without libhdf5 and without a C compiler.
+//! Beside them stands what belongs to the program alone: the claims of the letter and the command
+//! line. `cli`, the default, includes all features. With `default-features = false` the first five
+//! modules remain, without libhdf5 and without a C compiler.
 //!
 //! # Example
 //!

@@ -74,7 +74,8 @@ pub enum Region {
 /// let numbers = [("mu0", 0.5), ("alpha_n", -1.0), ("tau", 1.0), ("v0", 3.0)];
 /// let setting = Setting::checked(numbers, Some(law), &[])?;
 /// let basin = Basin { starts: 64, ..Basin::default() };
-/// let asked = BasinProblem::of(&setting, &Simulation::default(), &basin)?.expect("there is a law");
+/// let asked = BasinProblem::of(&setting, &Simulation::default(), &basin)?;
+/// let asked = asked.expect("there is a law");
 /// let (mut follower, mut motion, mut tally) = (asked.follower(), None, Tally::default());
 /// for place in asked.places() {
 ///     tally.count(place, follower.follow(place, &mut motion));

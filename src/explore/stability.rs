@@ -1,7 +1,7 @@
 //! Linear stability of a linear model at a delay and over all others, with its roots.
 //!
-//! A margin or an end that does not exist is infinite here, and a number that is not known NaN; JSON
-//! has null for both.
+//! A margin or an end that does not exist is infinite here, and a number that is not known is NaN;
+//! JSON has null for both.
 
 use serde::Serialize;
 

@@ -76,7 +76,7 @@ pub(crate) struct ClaimValue {
     /// or a truth that has none.
     #[schema(required)]
     pub error: Option<f64>,
-    /// What the letter says instead.
+    /// What the letter says instead; null where it says nothing.
     #[schema(required)]
     pub letter: Option<f64>,
 }
