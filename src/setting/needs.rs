@@ -122,10 +122,12 @@ const NEEDS: [Need; 16] = [
         |field| field == Field::StiffnessRatio,
         |asked, field| {
             let law = Formula::RateAndState.name();
-            let message = format!("{} is of the {law} law", field.name());
-            let help = format!("give [friction] law = \"{law}\", and v0");
-            let without = asked.fixed.rate_and_state().is_none();
-            without.then(|| ReportedAt::Field.refuse(message, help))
+            asked.fixed.rate_and_state().is_none().then(|| {
+                ReportedAt::Field.refuse(
+                    format!("{} is of the {law} law", field.name()),
+                    format!("give [friction] law = \"{law}\", and v0"),
+                )
+            })
         },
     ),
     need(Stage::Company, Field::of_basin, |asked, field| {
@@ -150,10 +152,12 @@ const NEEDS: [Need; 16] = [
         Stage::Company,
         |field| field.of_motion() && field != Field::Outcome,
         |asked, field| {
-            let beside = format!("{} cannot stand beside", field.name());
             asked.any(Field::of_vc).then(|| {
                 ReportedAt::Field.refuse(
-                    format!("{beside} fields of the critical velocity"),
+                    format!(
+                        "{} cannot stand beside fields of the critical velocity",
+                        field.name()
+                    ),
                     "it is about a motion from one start: make a sweep of its own for it; outcome \
                      can stand in both",
                 )
@@ -165,12 +169,13 @@ const NEEDS: [Need; 16] = [
         |_| true,
         |asked, _| {
             let (error, law) = (GivenError::Missing(Parameter::V0), asked.fixed.law()?);
-            let [message, help] = [
-                error.message(Some(law), Parameter::key),
-                error.help(Parameter::key),
-            ];
             let missing = asked.needs_v0() && !asked.has(Parameter::V0);
-            missing.then(|| ReportedAt::Law.refuse(message, help))
+            missing.then(|| {
+                ReportedAt::Law.refuse(
+                    error.message(Some(law), Parameter::key),
+                    error.help(Parameter::key),
+                )
+            })
         },
     ),
     need(Stage::Values, Field::of_motion, |asked, _| {
@@ -280,13 +285,13 @@ impl<'a> FieldsAsked<'a> {
 
     /// The error of a field that needs a friction law, which is not there.
     fn without_law(&self, why: &str) -> Option<Unmet> {
-        let help = match self.needs_v0() {
-            true => "give [friction] and v0 instead of mu_prime and mu_k",
-            false => "give [friction] instead of mu_prime and mu_k",
-        };
-        let message = format!("this field needs a friction law: {why}");
-        let without = self.fixed.law().is_none();
-        without.then(|| ReportedAt::Field.refuse(message, help))
+        self.fixed.law().is_none().then(|| {
+            let help = match self.needs_v0() {
+                true => "give [friction] and v0 instead of mu_prime and mu_k",
+                false => "give [friction] instead of mu_prime and mu_k",
+            };
+            ReportedAt::Field.refuse(format!("this field needs a friction law: {why}"), help)
+        })
     }
 }
 
@@ -297,9 +302,10 @@ fn of_motions(field: Field) -> bool {
 
 /// The error of a law that has no motions.
 pub(super) fn no_motions(law: &LawKind) -> Option<Unmet> {
-    let message = format!("the {} law has no motions here", law.name());
-    law.has_state()
-        .then(|| ReportedAt::Law.refuse(message, NO_MOTIONS))
+    law.has_state().then(|| {
+        let message = format!("the {} law has no motions here", law.name());
+        ReportedAt::Law.refuse(message, NO_MOTIONS)
+    })
 }
 
 /// The error of a motion that starts in a state and at a phase.

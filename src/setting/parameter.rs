@@ -96,13 +96,33 @@ pub struct Page {
     pub folded: Option<Folded>,
 }
 
-/// What most parameters on the page share.
-const PAGE: Page = Page {
-    first: None,
-    slider: [0.0, 1.0],
-    axis: [0.0, 1.0],
-    folded: None,
-};
+impl Page {
+    /// A slider and an axis between these ends, in sight, with the value by default at first.
+    const fn new(slider: [f64; 2], axis: [f64; 2]) -> Self {
+        Self {
+            first: None,
+            slider,
+            axis,
+            folded: None,
+        }
+    }
+
+    /// Another value at first.
+    const fn first(self, value: f64) -> Self {
+        Self {
+            first: Some(value),
+            ..self
+        }
+    }
+
+    /// Its slider folded away in a box.
+    const fn folded(self, folded: Folded) -> Self {
+        Self {
+            folded: Some(folded),
+            ..self
+        }
+    }
+}
 
 /// The facts about a parameter.
 struct Row {
@@ -119,7 +139,7 @@ struct Row {
     default: Option<f64>,
     group: Group,
     flag: Option<Flag>,
-    /// None where the page does not offer it.
+    /// How the page offers it; none where it does not.
     page: Option<Page>,
 }
 
@@ -167,12 +187,7 @@ catalogue! {
                 value: "B",
                 help: "μ_K′(v0), slope of the friction coefficient at the sliding velocity",
             }),
-            page: Some(Page {
-                first: Some(-0.3),
-                slider: [-0.95, 0.5],
-                axis: [-0.95, 0.2],
-                ..PAGE
-            }),
+            page: Some(Page::new([-0.95, 0.5], [-0.95, 0.2]).first(-0.3)),
             ..ROW
         };
         /// α_v, the gain of velocity control.
@@ -187,12 +202,7 @@ catalogue! {
                 value: "A",
                 help: "α_v, gain of velocity control [default: 0]",
             }),
-            page: Some(Page {
-                first: Some(-0.33),
-                slider: [-3.0, 3.0],
-                axis: [-1.6, 0.4],
-                ..PAGE
-            }),
+            page: Some(Page::new([-3.0, 3.0], [-1.6, 0.4]).first(-0.33)),
             ..ROW
         };
         /// α_N, the gain of load control.
@@ -207,12 +217,7 @@ catalogue! {
                 value: "A",
                 help: "α_N, gain of load control [default: 0]",
             }),
-            page: Some(Page {
-                first: Some(-2.0),
-                slider: [-10.0, 10.0],
-                axis: [-3.0, 1.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([-10.0, 10.0], [-3.0, 1.0]).first(-2.0)),
             ..ROW
         };
         /// τ, the delay.
@@ -226,12 +231,7 @@ catalogue! {
                 value: "T",
                 help: "τ, delay of the feedback",
             }),
-            page: Some(Page {
-                first: Some(4.15),
-                slider: [0.0, 25.0],
-                axis: [0.0, 12.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([0.0, 25.0], [0.0, 12.0]).first(4.15)),
             ..ROW
         };
         /// v0, the unperturbed pulling velocity.
@@ -245,12 +245,7 @@ catalogue! {
                 value: "V0",
                 help: "v0, pulling velocity (with --friction)",
             }),
-            page: Some(Page {
-                first: Some(0.35),
-                slider: [0.01, 3.0],
-                axis: [0.02, 2.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([0.01, 3.0], [0.02, 2.0]).first(0.35)),
             ..ROW
         };
         /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
@@ -264,12 +259,7 @@ catalogue! {
                 value: "M",
                 help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]",
             }),
-            page: Some(Page {
-                slider: [0.05, 2.0],
-                axis: [0.05, 2.0],
-                folded: Some(Folded::Model),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.05, 2.0], [0.05, 2.0]).folded(Folded::Model)),
             ..ROW
         };
         /// M, the mass of the block.
@@ -283,12 +273,7 @@ catalogue! {
                 value: "MASS",
                 help: "M, mass [default: 1]",
             }),
-            page: Some(Page {
-                slider: [0.1, 10.0],
-                axis: [0.2, 5.0],
-                folded: Some(Folded::Model),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.1, 10.0], [0.2, 5.0]).folded(Folded::Model)),
             ..ROW
         };
         /// κ, the stiffness of the spring.
@@ -302,12 +287,7 @@ catalogue! {
                 value: "STIFFNESS",
                 help: "κ, stiffness [default: 1]",
             }),
-            page: Some(Page {
-                slider: [0.1, 10.0],
-                axis: [0.2, 5.0],
-                folded: Some(Folded::Model),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.1, 10.0], [0.2, 5.0]).folded(Folded::Model)),
             ..ROW
         };
         /// N0, the unperturbed normal load.
@@ -321,12 +301,7 @@ catalogue! {
                 value: "NORMAL_LOAD",
                 help: "N0, normal load [default: 1]",
             }),
-            page: Some(Page {
-                slider: [0.1, 10.0],
-                axis: [0.2, 5.0],
-                folded: Some(Folded::Model),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.1, 10.0], [0.2, 5.0]).folded(Folded::Model)),
             ..ROW
         };
         /// R, the memory of the feedback.
@@ -340,12 +315,7 @@ catalogue! {
                 value: "R",
                 help: "R, share of the feedback fed back again one delay later [default: 0]",
             }),
-            page: Some(Page {
-                slider: [-0.95, 0.95],
-                axis: [-0.9, 0.9],
-                folded: Some(Folded::Feedback),
-                ..PAGE
-            }),
+            page: Some(Page::new([-0.95, 0.95], [-0.9, 0.9]).folded(Folded::Feedback)),
             ..ROW
         };
         /// δ, the latency of the feedback.
@@ -357,12 +327,7 @@ catalogue! {
                 value: "T",
                 help: "δ, latency: time until the feedback acts [default: 0]",
             }),
-            page: Some(Page {
-                slider: [0.0, 5.0],
-                axis: [0.0, 2.0],
-                folded: Some(Folded::Feedback),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.0, 5.0], [0.0, 2.0]).folded(Folded::Feedback)),
             ..LAG
         };
         /// T_a, the lag of the load behind its command.
@@ -374,12 +339,7 @@ catalogue! {
                 value: "T",
                 help: "T_a, time constant with which the load follows its command [default: 0]",
             }),
-            page: Some(Page {
-                slider: [0.0, 2.0],
-                axis: [0.0, 1.0],
-                folded: Some(Folded::Feedback),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Feedback)),
             ..LAG
         };
         /// T_v, the lag of the pulling velocity behind its command.
@@ -391,12 +351,7 @@ catalogue! {
                 value: "T",
                 help: "T_v, time constant with which the velocity follows its command [default: 0]",
             }),
-            page: Some(Page {
-                slider: [0.0, 2.0],
-                axis: [0.0, 1.0],
-                folded: Some(Folded::Feedback),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Feedback)),
             ..LAG
         };
         /// T_s, the lag of the sensor behind the elongation.
@@ -408,12 +363,7 @@ catalogue! {
                 value: "T",
                 help: "T_s, time constant with which the sensor follows elongation [default: 0]",
             }),
-            page: Some(Page {
-                slider: [0.0, 2.0],
-                axis: [0.0, 1.0],
-                folded: Some(Folded::Feedback),
-                ..PAGE
-            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Feedback)),
             ..LAG
         };
         /// μ0 of a friction law.
@@ -426,12 +376,7 @@ catalogue! {
                 value: "MU0",
                 help: "μ0 of the friction law",
             }),
-            page: Some(Page {
-                first: Some(0.5),
-                slider: [0.05, 1.0],
-                axis: [0.05, 1.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([0.05, 1.0], [0.05, 1.0]).first(0.5)),
             ..ROW
         };
         /// v_s of a friction law.
@@ -445,12 +390,7 @@ catalogue! {
                 value: "V_S",
                 help: "v_s of the friction law",
             }),
-            page: Some(Page {
-                first: Some(0.5),
-                slider: [0.02, 4.0],
-                axis: [0.05, 2.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([0.02, 4.0], [0.05, 2.0]).first(0.5)),
             ..ROW
         };
         /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
@@ -543,11 +483,7 @@ catalogue! {
                 value: "MU_S",
                 help: "μ_S, static friction coefficient [default: 1]",
             }),
-            page: Some(Page {
-                slider: [0.1, 2.0],
-                axis: [0.2, 2.0],
-                ..PAGE
-            }),
+            page: Some(Page::new([0.1, 2.0], [0.2, 2.0])),
             ..ROW
         };
         /// ẋ at t = 0.

@@ -40,7 +40,7 @@ impl From<FeedbackForm> for Composition {
 }
 
 impl Composition {
-    /// The same with all polynomials divided by λ.
+    /// This composition with all polynomials divided by λ.
     pub(super) fn divided_by_variable(&self) -> Self {
         match self {
             Self::Late(feedback) => Self::Late(feedback.divided_by_variable()),
