@@ -65,12 +65,12 @@ pub enum Region {
 /// ```
 /// use slipmap::answers::basin::{BasinProblem, Tally};
 /// use slipmap::setting::basin::Basin;
-/// use slipmap::setting::law_kind::{Formula, LawKind};
+/// use slipmap::setting::law_kind::LawKind;
 /// use slipmap::setting::simulation::Simulation;
 /// use slipmap::setting::{Parameter, Setting};
 /// use slipmap::slip::outcome::Outcome;
 ///
-/// let law = LawKind::Formula(Formula::named("coulomb")?);
+/// let law = LawKind::named("coulomb")?;
 /// let numbers = [("mu0", 0.5), ("alpha_n", -1.0), ("tau", 1.0), ("v0", 3.0)];
 /// let setting = Setting::checked(numbers, Some(law), &[])?;
 /// let basin = Basin { starts: 64, ..Basin::default() };

@@ -37,11 +37,11 @@ impl VcProblem {
     ///
     /// ```
     /// use slipmap::answers::vc::VcProblem;
-    /// use slipmap::setting::law_kind::{Formula, LawKind};
+    /// use slipmap::setting::law_kind::LawKind;
     /// use slipmap::setting::search::Protocol;
     /// use slipmap::setting::{Parameter, Setting};
     ///
-    /// let law = LawKind::Formula(Formula::named("weakening")?);
+    /// let law = LawKind::named("weakening")?;
     /// let numbers = [("mu0", 0.5), ("v_s", 0.5), ("alpha_v", -0.33), ("tau", 4.15)];
     /// let setting = Setting::checked(numbers, Some(law), &[Parameter::V0])?;
     /// let found = VcProblem::of(&setting)?.find(Protocol::Follow);

@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-use crate::model::ModelError;
+use crate::model::{ModelError, RateAndState};
 use crate::setting::Parameter;
-use crate::setting::law_kind::{Formula, LawKind, NO_MOTIONS};
+use crate::setting::law_kind::{LawKind, NO_MOTIONS, NamedLaw};
 use crate::setting::parameter::Group;
 use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::units::Units;
@@ -39,8 +39,8 @@ struct LawArgs {
 /// Friction laws by name, with their formulas; those without motions are hidden where motions are
 /// followed.
 fn law_names(of_motions: bool) -> PossibleValuesParser {
-    let formulas = Formula::ALL.into_iter().map(move |law| {
-        let hidden = of_motions && LawKind::Formula(law).has_state();
+    let formulas = NamedLaw::all().iter().map(move |law| {
+        let hidden = of_motions && LawKind::Named(law).has_state();
         let value = PossibleValue::new(law.name()).help(law.formula());
         value.hide(hidden)
     });
@@ -51,7 +51,7 @@ fn law_names(of_motions: bool) -> PossibleValuesParser {
 
 /// The failure for a law with a state where motions are followed.
 fn no_motions() -> Failure {
-    let law = Formula::RateAndState.name();
+    let law = RateAndState::FORM.name;
     Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
 }
 
@@ -151,7 +151,7 @@ impl<A: Asks> ParameterArgs<A> {
                 help,
             )),
             // The flag accepts only the names of laws.
-            (name, None) => Ok(name.and_then(Formula::from_name).map(LawKind::Formula)),
+            (name, None) => Ok(name.and_then(NamedLaw::from_name).map(LawKind::Named)),
         }
     }
 
@@ -165,8 +165,8 @@ impl<A: Asks> ParameterArgs<A> {
 
     /// Whether the friction law has a state.
     fn has_state(&self) -> bool {
-        let law = self.law.friction.as_deref().and_then(Formula::from_name);
-        law == Some(Formula::RateAndState)
+        let law = self.law.friction.as_deref().and_then(NamedLaw::from_name);
+        law.is_some_and(|law| LawKind::Named(law).has_state())
     }
 
     /// A value for the delay where it is not needed, because both gains are 0.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::setting::law_kind::{Formula, LawKind};
+use crate::setting::law_kind::{LawKind, NamedLaw};
 use crate::setting::parameter::{Folded, Page};
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
@@ -114,7 +114,7 @@ impl Known {
     /// Everything.
     #[must_use]
     pub fn all() -> Self {
-        let formulas = Formula::ALL.map(KnownLaw::of);
+        let formulas = NamedLaw::all().iter().map(KnownLaw::of);
         let table = KnownLaw {
             name: LawKind::TABLE,
             formula: None,
@@ -125,7 +125,7 @@ impl Known {
         Self {
             version: crate::VERSION,
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
-            laws: formulas.into_iter().chain([table]).collect(),
+            laws: formulas.chain([table]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
         }
     }
@@ -167,11 +167,11 @@ impl KnownPage {
 }
 
 impl KnownLaw {
-    fn of(formula: Formula) -> Self {
-        let law = LawKind::Formula(formula);
+    fn of(named: &'static NamedLaw) -> Self {
+        let law = LawKind::Named(named);
         Self {
-            name: formula.name(),
-            formula: Some(formula.formula()),
+            name: named.name(),
+            formula: Some(named.formula()),
             parameters: law.parameters().iter().map(|p| p.name()).collect(),
             needed: law.needed(),
             motions: !law.has_state(),

@@ -71,7 +71,7 @@ impl LawCurve {
         Ok(Self {
             law: kind.name(),
             formula: match kind {
-                LawKind::Formula(formula) => Some(formula.formula()),
+                LawKind::Named(law) => Some(law.formula()),
                 LawKind::Table(_) => None,
             },
             mu_k: v.iter().map(|v| law.mu_k(*v)).collect(),
@@ -79,7 +79,7 @@ impl LawCurve {
             v,
             mu_s: law.mu_s(),
             points: match kind {
-                LawKind::Formula(_) => Vec::new(),
+                LawKind::Named(_) => Vec::new(),
                 LawKind::Table(table) => {
                     let mu_k = table.mu_k().iter();
                     table

@@ -12,6 +12,7 @@
 //! steady sliding without control is unstable.
 
 use super::elementary::ln;
+use super::law::{Form, Made};
 use super::{ModelError, Oscillator, SlidingPoint};
 
 /// The law, with its parameters as in (1).
@@ -63,6 +64,29 @@ pub struct StateGroups {
 }
 
 impl RateAndState {
+    /// Its row where laws are named.
+    pub const FORM: Form = Form {
+        name: "rate-and-state",
+        formula: "μ = μ0 + A_f ln(v/v*) + B_f ln(v* θ/D_c)",
+        parameters: &[
+            "mu0",
+            "v_star",
+            "direct_effect",
+            "evolution_effect",
+            "slip_distance",
+        ],
+        needed: 5,
+        optional: "load_memory",
+        law: Made::WithState(|of, load_memory| Self {
+            mu0: of[0],
+            v_star: of[1],
+            direct_effect: of[2],
+            evolution_effect: of[3],
+            slip_distance: of[4],
+            load_memory,
+        }),
+    };
+
     /// Value and slope of the coefficient of steady sliding, μ₀ + (A − B) ln(v/v*), at `v0` > 0.
     ///
     /// # Errors

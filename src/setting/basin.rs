@@ -245,14 +245,14 @@ fn read_over(entry: &Entry) -> Result<Over, SpecError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::setting::law_kind::{Formula, LawKind};
+    use crate::setting::law_kind::LawKind;
 
     /// The default range scales with the units and contains the uncontrolled cycle. For Coulomb
     /// friction its largest velocity is v0 + √(v0² + ((μ_S − μ_K) N0)²/(κM)).
     #[test]
     fn the_box_by_default_holds_the_uncontrolled_cycle() {
         for (mass, stiffness, load, v0) in [(1.0, 1.0, 1.0, 0.1), (2.0, 7.0, 3.0, 40.0)] {
-            let mut setting = Setting::new(Some(LawKind::Formula(Formula::Coulomb)));
+            let mut setting = Setting::new(Some(LawKind::named("coulomb").unwrap()));
             for (parameter, value) in [
                 (Parameter::Mu0, 0.4),
                 (Parameter::MuS, 0.9),

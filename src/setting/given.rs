@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::friction_table::GivenTable;
 use super::keys::{FRICTION_TABLE, UNITS, names};
-use super::law_kind::{Formula, LawKind};
+use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
@@ -175,7 +175,7 @@ impl GivenParameters {
         if name == LawKind::TABLE {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
-        let law = Formula::named(name).map_err(|error| SpecError {
+        let law = LawKind::named(name).map_err(|error| SpecError {
             help: error.help,
             ..entry.error(error.message)
         })?;
@@ -185,7 +185,7 @@ impl GivenParameters {
                 SpecError::at(place.clone(), message).help("points are for law = \"table\"")
             );
         }
-        Ok(LawKind::Formula(law))
+        Ok(law)
     }
 
     /// Checks that motions can be followed under the law, as far as the law alone decides this.
@@ -399,7 +399,7 @@ mod tests {
     /// Every refusal has the words of the same setting in a file, whose places are left out.
     #[test]
     fn named_numbers_are_refused_in_the_words_of_files() {
-        let weakening = || Some(LawKind::Formula(Formula::Weakening));
+        let weakening = || Some(LawKind::named("weakening").unwrap());
         let law = "[friction]\nlaw = \"weakening\"\n";
         for (numbers, law, text) in [
             (
@@ -444,7 +444,7 @@ mod tests {
 
     #[test]
     fn what_varies_needs_no_value() {
-        let law = Some(LawKind::Formula(Formula::Coulomb));
+        let law = Some(LawKind::named("coulomb").unwrap());
         let numbers = [("mu0", 0.5), ("alpha_n", -2.0)];
         let varied = [Parameter::Tau, Parameter::V0];
         let setting = Setting::checked(numbers, law.clone(), &varied).unwrap();

@@ -4,7 +4,7 @@
 
 use super::axis::Axis;
 use super::field::Field;
-use super::law_kind::{Formula, LawKind, NO_MOTIONS};
+use super::law_kind::{LawKind, NO_MOTIONS};
 use super::parameter::Parameter;
 use super::search::LIMIT;
 use super::simulation::NOT_IN_MOTIONS;
@@ -12,6 +12,7 @@ use super::source::{OfLinear, OfMargins, OfRoots, Source};
 use super::spec::{SweepSpec, most};
 use super::system::SystemModel;
 use super::values::{GivenError, Setting};
+use crate::model::RateAndState;
 use crate::text::SpecError;
 
 /// When a need is checked. Each stage takes for granted that the needs of those before it are met.
@@ -121,7 +122,7 @@ const NEEDS: [Need; 16] = [
         Stage::Model,
         |field| field == Field::StiffnessRatio,
         |asked, field| {
-            let law = Formula::RateAndState.name();
+            let law = RateAndState::FORM.name;
             asked.fixed.rate_and_state().is_none().then(|| {
                 ReportedAt::Field.refuse(
                     format!("{} is of the {law} law", field.name()),

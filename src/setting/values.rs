@@ -281,9 +281,7 @@ impl Setting {
         match (law, parameter.group()) {
             (_, Group::Limit) => false,
             (Some(_), Group::Sliding) => false,
-            (Some(law), Group::Law) => {
-                parameter == law.optional() || law.parameters().contains(&parameter)
-            }
+            (Some(law), Group::Law) => law.has(parameter),
             (None, Group::Law | Group::Pull) => false,
             _ => true,
         }

@@ -13,8 +13,8 @@ const PATCHES: [(&str, usize, usize); 4] = [
     ("field", 1, 10),
     // A row.
     ("parameter", 1, 12),
-    // Its file: value, slope, bounds and series; its line; its row.
-    ("law", 3, 75),
+    // Its file: form, value, slope, bounds and series; its line.
+    ("law", 2, 72),
     // Its file; its line in the list, its `mod` and its row.
     ("command", 2, 15),
 ];

@@ -10,7 +10,7 @@ use slipmap::explore::stability::Wanted;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::model::stop::Stop;
 use slipmap::setting::field::Storage;
-use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::law_kind::LawKind;
 use slipmap::setting::{Field, Parameter, Setting, SweepSpec};
 use slipmap::sweep::Plan;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
@@ -37,7 +37,7 @@ fn all_rows() -> impl Iterator<Item = Row> {
 /// row's.
 fn setting(row: &Row, [force, length, time]: [f64; 3]) -> Setting {
     let with_state = row.number("state_time").is_some();
-    let law = with_state.then_some(LawKind::Formula(Formula::RateAndState));
+    let law = with_state.then(|| LawKind::named("rate-and-state").unwrap());
     let mut setting = Setting::new(law);
     for parameter in Parameter::ALL {
         let unit = [force, length, time]

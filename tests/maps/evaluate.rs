@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::every_kind::{SWEEPS, plan};
-use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::law_kind::LawKind;
 use slipmap::setting::{Field, Parameter, Setting};
 use slipmap::sweep::cells::buffers::TileBuffers;
 use slipmap::sweep::evaluate::{Points, Wanted, evaluate};
@@ -127,8 +127,8 @@ fn check_refusal(field: Field, setting: &Setting, delay: f64, says: &str) {
 }
 
 /// A setting without its delay.
-fn setting(law: Option<Formula>, numbers: &[(&'static str, f64)]) -> Setting {
-    let law = law.map(LawKind::Formula);
+fn setting(law: Option<&str>, numbers: &[(&'static str, f64)]) -> Setting {
+    let law = law.map(|name| LawKind::named(name).unwrap());
     Setting::checked(numbers.iter().copied(), law, &TAU).unwrap()
 }
 
@@ -155,7 +155,7 @@ fn fields_are_refused_where_sweep_files_refuse_them() {
         ("alpha_v", -0.5),
         ("load_lag", 0.0),
     ];
-    let mut law = setting(Some(Formula::Coulomb), &coulomb);
+    let mut law = setting(Some("coulomb"), &coulomb);
     check_refusal(Field::Outcome, &law, 0.0, "tau = 0 is outside its range");
     law.set(Parameter::LoadLag, 0.2);
     check_refusal(Field::Outcome, &law, 1.0, "load_lag is not known");

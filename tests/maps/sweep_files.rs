@@ -1,7 +1,7 @@
 //! Sweep files: what is understood, and that every mistake is pointed at.
 
 use slipmap::linear::MarginalTolerance;
-use slipmap::setting::law_kind::{Formula, LawKind};
+use slipmap::setting::law_kind::LawKind;
 use slipmap::setting::{CaseSpec, Field, Parameter, SweepSpec};
 use slipmap::sweep::Plan;
 
@@ -64,7 +64,7 @@ fn everything_is_understood() {
     assert_eq!(spec.axes[2].values.len(), 10);
     assert_eq!(
         spec.fixed.law(),
-        Some(&LawKind::Formula(Formula::Weakening))
+        Some(&LawKind::named("weakening").unwrap())
     );
     assert_eq!(spec.fixed.get(Parameter::Mass), 2.0);
     assert_eq!(spec.fixed.get(Parameter::MuS), 1.0);

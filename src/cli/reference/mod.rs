@@ -15,7 +15,7 @@ use std::fmt::Write;
 use crate::linear::status::FLAGS;
 use crate::setting::field::Storage;
 use crate::setting::keys::{self, Key};
-use crate::setting::law_kind::{Formula, LawKind};
+use crate::setting::law_kind::{LawKind, NamedLaw};
 use crate::setting::{Field, Parameter};
 use crate::sweep::described::schema;
 use clap::ValueEnum;
@@ -123,8 +123,8 @@ fn laws(page: &mut String) {
         "`law` in `[friction]` of a file, `--friction` on the command line. Every law has the \
          static coefficient `mu_s`, 1 unless given; `v` is the sliding velocity.",
     );
-    let rows = Formula::ALL.into_iter().map(|of| {
-        let law = LawKind::Formula(of);
+    let rows = NamedLaw::all().iter().map(|of| {
+        let law = LawKind::Named(of);
         let parameters = law.parameters().iter().map(|p| code(p.name()));
         [
             code(of.name()),

@@ -1,6 +1,6 @@
 //! Coulomb's law, μ_K = μ0: the same at all speeds.
 
-use super::{FrictionLaw, Kind, Law, Range, Series, checked_coefficients};
+use super::{Form, FrictionLaw, Kind, Law, Made, Range, Series, checked_coefficients};
 use crate::model::ModelError;
 use crate::model::series::Coefficients;
 
@@ -24,6 +24,15 @@ impl FrictionLaw {
 
 impl Law for Coulomb {
     type Series = Self;
+
+    const FORM: Option<&'static Form> = Some(&Form {
+        name: "coulomb",
+        formula: "μ_K = μ0",
+        parameters: &["mu0"],
+        needed: 1,
+        optional: "mu_s",
+        law: Made::OfVelocity(|of, mu_s| FrictionLaw::coulomb(of[0], mu_s)),
+    });
 
     fn mu_k(&self, _: f64) -> f64 {
         self.mu0

@@ -1,23 +1,27 @@
 //! Kinetic friction laws μ_K(v): a law is one file and one line of `laws!`.
 //!
 //! - `coulomb`: the same at all speeds
+//! - `form`: what is said of a law wherever laws are named
 //! - `stribeck`: a Gaussian transition
 //! - `table`: measured points
 //! - `weakening`: the letter's velocity weakening
 
 mod coulomb;
+mod form;
 mod stribeck;
 mod table;
 mod weakening;
 
 pub use coulomb::Coulomb;
+pub use form::Form;
+pub(crate) use form::Made;
 pub use stribeck::Stribeck;
 pub(crate) use table::Crossing;
 pub use weakening::Weakening;
 
 use super::error::AT_MOST_MU_S;
 use super::series::Coefficients;
-use super::{ModelError, Table};
+use super::{ModelError, RateAndState, Table};
 
 /// The least and the greatest value.
 type Range = (f64, f64);
@@ -26,6 +30,9 @@ type Range = (f64, f64);
 pub(crate) trait Law {
     /// Its Taylor series along a motion.
     type Series: Series;
+
+    /// Its row where laws are named; none where parameters alone do not describe it.
+    const FORM: Option<&'static Form> = None;
 
     /// See [`FrictionLaw::mu_k`].
     fn mu_k(&self, speed: f64) -> f64;
@@ -139,6 +146,10 @@ macro_rules! laws {
             }
         }
 
+        /// The forms of all laws that parameters alone describe; that with a state is the last.
+        const FORMS: &[Option<&Form>] =
+            &[$(<$law as Law>::FORM,)* Some(&RateAndState::FORM)];
+
         /// Evaluates an expression with the law behind a [`Kind`].
         macro_rules! with_law {
             ($d kind:expr, $d law:ident => $d body:expr) => {
@@ -185,6 +196,13 @@ laws! {
 pub struct FrictionLaw {
     kind: Kind,
     mu_s: f64,
+}
+
+impl Form {
+    /// All forms, in the order of lists.
+    pub fn all() -> impl Iterator<Item = &'static Self> {
+        FORMS.iter().copied().flatten()
+    }
 }
 
 impl FrictionLaw {

@@ -1,6 +1,6 @@
 //! Stribeck's law with a Gaussian transition, μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²).
 
-use super::{FrictionLaw, Kind, Law, Range, Series, checked_coefficients, hull};
+use super::{Form, FrictionLaw, Kind, Law, Made, Range, Series, checked_coefficients, hull};
 use crate::model::ModelError;
 use crate::model::elementary::{exp, ln, power};
 use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
@@ -41,6 +41,15 @@ fn gaussian(s: f64) -> f64 {
 
 impl Law for Stribeck {
     type Series = StribeckSeries;
+
+    const FORM: Option<&'static Form> = Some(&Form {
+        name: "stribeck",
+        formula: "μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)",
+        parameters: &["mu0", "v_s"],
+        needed: 2,
+        optional: "mu_s",
+        law: Made::OfVelocity(|of, mu_s| FrictionLaw::stribeck(of[0], of[1], mu_s)),
+    });
 
     fn mu_k(&self, speed: f64) -> f64 {
         self.mu0 + (self.mu_s - self.mu0) * gaussian(speed / self.v_s)

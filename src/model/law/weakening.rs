@@ -1,6 +1,6 @@
 //! The letter's velocity weakening, μ_K = μ0/(1 + v/v_s).
 
-use super::{FrictionLaw, Kind, Law, Range, Series, checked_coefficients, hull};
+use super::{Form, FrictionLaw, Kind, Law, Made, Range, Series, checked_coefficients, hull};
 use crate::model::ModelError;
 use crate::model::elementary::power;
 use crate::model::series::{Coefficients, MOST_ORDER, product};
@@ -29,8 +29,30 @@ impl FrictionLaw {
     }
 }
 
+/// μ0 and v_s: each as given, or from the other and the slope at rest, which comes third.
+fn mu0_and_v_s(given: &[f64]) -> (f64, f64) {
+    let (mu0, v_s, slope) = (given[0], given[1], given[2]);
+    match (mu0.is_nan(), v_s.is_nan()) {
+        (true, false) => (-slope * v_s, v_s),
+        (false, true) => (mu0, -mu0 / slope),
+        _ => (mu0, v_s),
+    }
+}
+
 impl Law for Weakening {
     type Series = WeakeningSeries;
+
+    const FORM: Option<&'static Form> = Some(&Form {
+        name: "weakening",
+        formula: "μ_K = μ0/(1 + v/v_s)",
+        parameters: &["mu0", "v_s", "mu_prime_rest"],
+        needed: 2,
+        optional: "mu_s",
+        law: Made::OfVelocity(|of, mu_s| {
+            let (mu0, v_s) = mu0_and_v_s(of);
+            FrictionLaw::weakening(mu0, v_s, mu_s)
+        }),
+    });
 
     fn mu_k(&self, speed: f64) -> f64 {
         self.mu0 / (1.0 + speed / self.v_s)
