@@ -148,6 +148,9 @@ fn the_dictionary_has_every_name() {
         let numbered = name
             .rsplit_once('_')
             .is_some_and(|(_, n)| n.parse::<u8>().is_ok());
-        assert!(numbered || words.contains(&format!("\"{name}\"")), "{name}");
+        assert!(
+            numbered || words.contains(&format!("\"{name}\"")),
+            "tests/fuzz/words.dict lacks {name}"
+        );
     }
 }

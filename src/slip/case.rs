@@ -299,17 +299,31 @@ impl Case {
             repeated: REPEATED,
             cycles: usize::MAX,
         };
-        let found = follow(motion, &limits, observer);
+        let Summary {
+            outcome,
+            decided,
+            settle_time,
+            n_min,
+            peak,
+            period,
+            stick_time,
+            slip_time,
+            last_release,
+            slips,
+            steps,
+        } = follow(motion, &limits, observer);
         Summary {
-            decided: found.decided * units.time,
-            settle_time: found.settle_time * units.time,
-            n_min: found.n_min * units.force,
-            peak: found.peak * units.force,
-            period: found.period * units.time,
-            stick_time: found.stick_time * units.time,
-            slip_time: found.slip_time * units.time,
-            last_release: found.last_release * units.time,
-            ..found
+            outcome,
+            decided: decided * units.time,
+            settle_time: settle_time * units.time,
+            n_min: n_min * units.force,
+            peak: peak * units.force,
+            period: period * units.time,
+            stick_time: stick_time * units.time,
+            slip_time: slip_time * units.time,
+            last_release: last_release * units.time,
+            slips,
+            steps,
         }
     }
 }

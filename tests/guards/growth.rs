@@ -14,7 +14,7 @@ const PATCHES: [(&str, usize, usize); 4] = [
     // A row.
     ("parameter", 1, 12),
     // Its file: form, value, slope, bounds and series; its line.
-    ("law", 2, 72),
+    ("law", 2, 78),
     // Its file; its line in the list, its `mod` and its row.
     ("command", 2, 15),
 ];

@@ -42,6 +42,10 @@ impl Law for Coulomb {
         0.0
     }
 
+    fn speed_scale(&self, _: f64) -> f64 {
+        f64::INFINITY
+    }
+
     fn slopes_between(&self, _: f64, _: f64) -> Range {
         (0.0, 0.0)
     }
@@ -59,5 +63,9 @@ impl Series for Coulomb {
     #[inline(always)]
     fn extend(&mut self, k: usize, _: f64, load: &Coefficients) -> f64 {
         self.mu0 * load[k]
+    }
+
+    fn resolved(&self, _: &[f64], length: f64, _: f64) -> f64 {
+        length
     }
 }

@@ -1,12 +1,14 @@
 //! Kinetic friction laws μ_K(v): a law is one file and one line of `laws!`.
 //!
 //! - `coulomb`: the same at all speeds
+//! - `discs`: how far a series holds whose first coefficients do not tell
 //! - `form`: what is said of a law wherever laws are named
 //! - `stribeck`: a Gaussian transition
 //! - `table`: measured points
 //! - `weakening`: the letter's velocity weakening
 
 mod coulomb;
+mod discs;
 mod form;
 mod stribeck;
 mod table;
@@ -41,9 +43,7 @@ pub(crate) trait Law {
     fn mu_prime(&self, speed: f64) -> f64;
 
     /// See [`FrictionLaw::speed_scale`].
-    fn speed_scale(&self, _speed: f64) -> f64 {
-        f64::INFINITY
-    }
+    fn speed_scale(&self, speed: f64) -> f64;
 
     /// See [`FrictionLaw::least_speed`].
     fn least_speed(&self) -> f64 {
@@ -74,10 +74,9 @@ pub(crate) trait Series {
 
     /// The longest step, at most `length`, on which the series is accurate to `error`, relative to
     /// the load. `speed` holds the coefficients of ẋ. All of `length` where the law is a polynomial
-    /// of the speed, or shows in the growth of its coefficients how far they hold.
-    fn resolved(&self, _speed: &[f64], length: f64, _error: f64) -> f64 {
-        length
-    }
+    /// of the speed, or shows in the growth of its coefficients how far they hold. Far above the
+    /// scale of an exponential the first ones are small whatever the later ones are: see `discs`.
+    fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64;
 
     /// μ_K at a speed in the motion's units by the piece of the law in use, also beyond its ends;
     /// none where the law is of one piece.
@@ -304,7 +303,11 @@ mod tests {
     use crate::model::series::{MOST_ORDER, value};
 
     fn laws() -> [FrictionLaw; 4] {
-        let table = Table::new(vec![0.0, 0.3, 1.5, 3.0], vec![0.8, 0.4, 0.5, 0.6]).unwrap();
+        laws_and(Table::new(vec![0.0, 0.25, 1.5, 3.0], vec![0.8, 0.4, 0.5, 0.6]).unwrap())
+    }
+
+    /// All laws, that of the table first.
+    fn laws_and(table: Table) -> [FrictionLaw; 4] {
         [
             FrictionLaw::table(table, 1.0).unwrap(),
             FrictionLaw::coulomb(0.4, 1.0).unwrap(),
@@ -377,18 +380,11 @@ mod tests {
 
     #[test]
     fn the_series_is_the_law_along_a_motion() {
-        let table = Table::new(vec![0.0, 0.25, 0.4, 1.0], vec![0.8, 0.5, 0.45, 0.6]).unwrap();
-        let laws = [
-            FrictionLaw::coulomb(0.4, 1.0).unwrap(),
-            FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
-            FrictionLaw::stribeck(0.3, 0.2, 0.9).unwrap(),
-            FrictionLaw::table(table, 1.0).unwrap(),
-        ];
         let mut load = [0.0; MOST_ORDER + 1];
         (load[0], load[1]) = (1.0, -0.5);
         // Speed 0.3 + 0.2 s − 0.1 s², in units of 2.
         let speed = [0.15, 0.1, -0.05];
-        for law in laws {
+        for law in laws() {
             let mut coefficients = [0.0; MOST_ORDER + 1];
             let mut series = FrictionSeries::new(&law, 2.0);
             series.restart(0.15);
@@ -408,13 +404,7 @@ mod tests {
 
     fn laws_of_ranges() -> [FrictionLaw; 4] {
         let speeds = vec![0.1, 0.3, 0.9, 1.5, 3.0];
-        let table = Table::new(speeds, vec![0.8, 0.4, 0.35, 0.5, 0.6]).unwrap();
-        [
-            FrictionLaw::table(table, 1.0).unwrap(),
-            FrictionLaw::coulomb(0.4, 1.0).unwrap(),
-            FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
-            FrictionLaw::stribeck(0.3, 0.6, 0.9).unwrap(),
-        ]
+        laws_and(Table::new(speeds, vec![0.8, 0.4, 0.35, 0.5, 0.6]).unwrap())
     }
 
     proptest! {

@@ -1,9 +1,10 @@
 //! Stribeck's law with a Gaussian transition, μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²).
 
+use super::discs::resolved;
 use super::{Form, FrictionLaw, Kind, Law, Made, Range, Series, checked_coefficients, hull};
 use crate::model::ModelError;
 use crate::model::elementary::{exp, ln, power};
-use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
+use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, product};
 
 /// The Gaussian is below rounding beyond this, in units of v_s.
 const FLANK: f64 = 6.0;
@@ -130,37 +131,17 @@ impl Series for StribeckSeries {
 
     /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. Up to z² = 2k these
     /// functions oscillate, and show how large those of higher order are. Beyond that the first
-    /// ones are as small as exp(−z²) whatever the later ones are. There Cauchy's estimate is used:
-    /// on a disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ),
-    /// where M is the largest absolute value on that disc.
+    /// ones are as small as exp(−z²) whatever the later ones are. There bounds on discs are used.
     fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         let order = (speed.len() - 1) as f64;
         let centre = self.scaled[0].abs();
         if centre * centre <= order || self.fall == 0.0 || !length.is_finite() {
             return length;
         }
-        let allowed = ln(error / self.fall);
-        let rest = |length: f64, disc: &f64| {
-            let off = spread(speed, disc * length) * self.per_v_s;
-            largest_exponent(centre, off) - order * ln(*disc) - ln(1.0 - 1.0 / disc)
-        };
-        let mut length = length;
-        for _ in 0..MOST_TIMES {
-            if DISCS.iter().any(|disc| rest(length, disc) <= allowed) {
-                return length;
-            }
-            length *= SHORTER;
-        }
-        length
+        let largest = |off: f64| largest_exponent(centre, off * self.per_v_s);
+        resolved(speed, length, ln(error / self.fall), largest)
     }
 }
-
-/// Radii of the discs on which the Gaussian is bounded, in units of the length of a step. Low
-/// orders need large ones.
-const DISCS: [f64; 8] = [1.25, 2.0, 3.0, 4.5, 10.0, 30.0, 100.0, 300.0];
-/// A step on which the series may be inaccurate is shortened by this factor, at most so many times.
-const SHORTER: f64 = 0.8;
-const MOST_TIMES: u32 = 60;
 
 /// The largest real part of −z² over a disc of radius `off` about `centre` ≥ 0.
 fn largest_exponent(centre: f64, off: f64) -> f64 {

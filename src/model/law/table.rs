@@ -40,6 +40,10 @@ impl Law for Table {
         self.speeds().last().copied()
     }
 
+    fn speed_scale(&self, _: f64) -> f64 {
+        f64::INFINITY
+    }
+
     fn slopes_between(&self, from: f64, to: f64) -> Range {
         let ends = [from, to].map(|v| self.slope(v));
         let pieces = pieces(self, from, to).map(|(piece, w)| piece_slopes(&piece, w));
@@ -208,6 +212,10 @@ impl Series for TableSeries {
         self.slope[k] = product(&self.bend, &self.w, k) + first(c1);
         self.coefficient[k] = product(&self.slope, &self.w, k) + first(c0);
         product(&self.coefficient, load, k)
+    }
+
+    fn resolved(&self, _: &[f64], length: f64, _: f64) -> f64 {
+        length
     }
 
     fn value(&self, speed: f64) -> Option<f64> {

@@ -114,4 +114,8 @@ impl Series for WeakeningSeries {
         };
         self.friction[k]
     }
+
+    fn resolved(&self, _: &[f64], length: f64, _: f64) -> f64 {
+        length
+    }
 }
