@@ -21,7 +21,7 @@ use super::crossing::Crossings;
 use super::roots::bisect;
 use crate::model::Groups;
 use crate::model::elementary::arg;
-use crate::model::groups::feedback;
+use crate::model::groups::{feedback, open_loop};
 
 /// The kinds of pure control whose lobes end at a finite slope of the friction law.
 ///
@@ -110,13 +110,11 @@ fn phase_and_derivative(groups: Groups, omega: f64) -> (f64, f64) {
     let Groups { b, a_v, a_n } = groups;
     let i = Complex64::i();
     let lambda = i * omega;
-    let open_loop = lambda * lambda + b * lambda + 1.0;
-    let feedback = feedback(a_n, a_v, b + lambda);
-    let (d_open_loop, d_feedback) = (i * (2.0 * lambda + b), i * a_v);
-    let theta = (-arg((feedback - open_loop) / feedback)).rem_euclid(TAU);
-    let derivative = ((d_open_loop * feedback - open_loop * d_feedback)
-        / (feedback * (feedback - open_loop)))
-        .im;
+    let own = open_loop(b, lambda);
+    let fed = feedback(a_n, a_v, b + lambda);
+    let (d_own, d_fed) = (i * (2.0 * lambda + b), i * a_v);
+    let theta = (-arg((fed - own) / fed)).rem_euclid(TAU);
+    let derivative = ((d_own * fed - own * d_fed) / (fed * (fed - own))).im;
     (theta, derivative)
 }
 

@@ -8,7 +8,7 @@ use crate::linear::curves::{Vertex, Window};
 use crate::linear::plane::{Band, CharacteristicValue, Local, Plane};
 use crate::model::Groups;
 use crate::model::elementary::{exp, power};
-use crate::model::groups::feedback;
+use crate::model::groups::{feedback, open_loop};
 use crate::model::stop::Stop;
 
 /// Step of the central difference in p, over the width of the window.
@@ -50,7 +50,7 @@ impl LetterPlane<'_> {
         let line = -sigma * unit;
         let kappa = exp(sigma * tau);
         let q0 = feedback(a_n, a_v, b + line);
-        let c = line * line + b * line + 1.0 - q0;
+        let c = open_loop(b, line) - q0;
         let damping = 2.0 * line + b - a_v;
         let half = 0.5 * (damping * damping - power(kappa * a_v, 2)) - c;
         let product = (c - kappa * q0) * (c + kappa * q0);
