@@ -29,6 +29,7 @@
 //! - `general`: any linear system with one delay
 //! - `line`: linear models, and what is told of each whatever its kind
 //! - `newton`: polishing of a root (Halley's method) and its error
+//! - `real_zeros`: all zeros of a real function of the frequency
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
 //! - `roots`: bisection
 //! - `rounded`: numbers with a bound on their rounding error
@@ -58,6 +59,7 @@ pub mod lobes;
 pub mod margins;
 pub mod newton;
 pub mod plane;
+mod real_zeros;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;

@@ -8,10 +8,11 @@ use super::parts::{Angle, Decay, FeedbackForm};
 use super::polynomial::Polynomial;
 use super::reason::Reason;
 use super::shifted::Shifted;
-use super::switches::{NearZero, Switch, Switches, each_switch};
+use super::switches::{NearZero, Switches, each_switch};
 use super::system::{Class, System};
 use crate::linear::characteristic::Jet;
 use crate::linear::collocation::eigenvalues;
+use crate::linear::real_zeros::Switch;
 use crate::model::Channel;
 
 /// An error of a phase that is not worth a slower evaluation, up to the degree of which zeros of F

@@ -18,9 +18,9 @@ use std::f64::consts::{PI, TAU};
 use super::parts::Angle;
 use super::precise::resolve::{Resolver, blurred, is_not_0};
 use super::reason::Reason;
-use super::switches::Switch;
 use super::system::{Class, System};
 use crate::linear::crossing::{Crossing, Direction};
+use crate::linear::real_zeros::Switch;
 
 /// The crossings of a line of delays.
 #[derive(Debug, Clone, Default)]

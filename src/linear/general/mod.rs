@@ -69,6 +69,7 @@ pub use line::DelayLine;
 pub use plane::{SystemPlane, SystemSetting};
 pub use polynomial::{DegreeTooLarge, MOST_DEGREE, Polynomial};
 pub use precise::source::Source;
+pub(super) use products::product;
 pub use reason::Reason;
 pub use right_of::RootCounter;
 pub use rightmost::Spectrum;

@@ -5,7 +5,7 @@ use super::polynomial::Polynomial;
 use crate::linear::rounded::Rounded;
 
 /// The product with its error; a product with an exact 0 or ±1 has no error of its own.
-pub(super) fn product(a: Rounded, b: Rounded) -> Rounded {
+pub(in crate::linear) fn product(a: Rounded, b: Rounded) -> Rounded {
     let value = a.value * b.value;
     let exact = a.value.abs() == 1.0 || b.value.abs() == 1.0;
     let rounding = if exact { 0.0 } else { f64::EPSILON };

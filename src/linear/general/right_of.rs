@@ -24,10 +24,11 @@ use super::latency::{Budget, Form, MOST_STEPS_OF_A_CELL};
 use super::parts::{Angle, Decay};
 use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::shifted::Shifted;
-use super::switches::{Switch, Switches, each_switch};
+use super::switches::{Switches, each_switch};
 use super::system::{Class, System};
 use super::turning::{NoNumber, RightOf, Turn, Turning, WholeTurns};
 use super::zeros::Zeros;
+use crate::linear::real_zeros::Switch;
 use crate::model::elementary::atan2;
 use crate::model::stop::Stop;
 

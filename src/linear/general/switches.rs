@@ -8,23 +8,11 @@ use super::isolate::{Enclosed, PositiveZeros};
 use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::shifted::Shifted;
 use super::zeros::{Set, Zeros};
+use crate::linear::real_zeros::{Switch, direction};
 use crate::model::elementary::pow;
 
 /// A relative error of x that is not worth a slower way.
 const ENOUGH: f64 = 1e-7;
-
-/// A positive zero of F, or several that cannot be told apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Switch {
-    /// The frequency ω = √x of the zero.
-    pub omega: f64,
-    /// A bound on the error of ω.
-    pub error: f64,
-    /// Half the change of the sign of F with growing x.
-    pub sign: i8,
-    /// Whether this is one zero, and simple.
-    pub simple: bool,
-}
 
 /// The positive zeros of F by falling frequency.
 #[derive(Debug, Clone, Default)]
@@ -213,11 +201,6 @@ fn switch((from, to): (f64, f64), centre: Option<f64>, (before, after): (bool, b
         sign: direction(before, after),
         simple: centre.is_some(),
     }
-}
-
-/// Half the change of the sign of F, positive or not.
-pub(super) const fn direction(before: bool, after: bool) -> i8 {
-    after as i8 - before as i8
 }
 
 /// A frequency beyond which the error of F(0) moves no zero that is near 0.

@@ -23,15 +23,18 @@ use num_complex::Complex64;
 use super::beyond::Beyond;
 use super::enclosure;
 use super::setting::Setting;
-use super::trig_polynomial::{self, Polynomial, TrigPolynomial};
-use super::zeros::Wave;
+use super::sum::{Part, Sum, Terms, conjugate, exactly, growth, on_line, one_and};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::characteristic::{Jet, root_bound};
+use crate::linear::feedback_loop::polynomial;
+use crate::linear::general::Polynomial;
+use crate::linear::real_zeros::RealFunction;
+use crate::linear::rounded::Rounded;
 use crate::linear::stable_delays::StableInterval;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
 use crate::model::elementary::exp;
-use crate::model::groups::{feedback, open_loop};
+use crate::model::groups::{feedback, open_loop, open_loop_coefficients};
 
 /// Ranges of what a setting can be: sizes up to these.
 #[derive(Debug, Clone, Copy)]
@@ -50,7 +53,7 @@ pub struct UpTo {
 /// those of the letter here, those beyond it in `beyond`.
 pub trait OnLine: Clone {
     /// The left side of an equation.
-    type Function: Wave;
+    type Function: RealFunction;
 
     /// How many steps along a direction are looked at for settings that are not stable.
     const STEPS: u32;
@@ -84,14 +87,11 @@ pub trait OnLine: Clone {
     /// The ω beyond which no crossing lies at any factor of the gains.
     fn highest_with_gain(&self) -> f64;
 
-    /// The left side of (2).
-    fn slope(&self) -> Self::Function;
+    /// The left side of (2), and the ω beyond which no root of any slope b lies on the line.
+    fn slope(&self) -> (Self::Function, f64);
 
     /// The slope b that a zero of [`OnLine::slope`] belongs to.
     fn slope_at(&self, omega: f64) -> f64;
-
-    /// The ω beyond which no root of any slope b lies on the line.
-    fn slope_bound(&self) -> f64;
 
     /// The left side minus the right side of (3).
     fn unit_loop(&self) -> Self::Function;
@@ -103,81 +103,40 @@ pub trait OnLine: Clone {
     fn unit_loop_bound(&self) -> f64;
 }
 
-/// A polynomial in ω with complex coefficients.
-#[derive(Debug, Clone, Copy)]
-struct Complex {
-    re: Polynomial,
-    im: Polynomial,
-}
-
-impl Complex {
-    fn of<const N: usize>(re: [f64; N], im: [f64; N]) -> Self {
-        Self {
-            re: Polynomial::of(re),
-            im: Polynomial::of(im),
-        }
-    }
-
-    /// The conjugate for real ω.
-    fn conjugate(self) -> Self {
-        Self {
-            im: Polynomial::default().plus(self.im, -1.0),
-            ..self
-        }
-    }
-
-    fn times(self, other: Self) -> Self {
-        Self {
-            re: self.re.times(other.re).plus(self.im.times(other.im), -1.0),
-            im: self.re.times(other.im).plus(self.im.times(other.re), 1.0),
-        }
-    }
+/// The parts of A B* on the imaginary axis that a_n and a_v are factors of, without lags. The
+/// second is (b + λ)(λ² + bλ + 1)* = b + (1 − b²)λ + λ³: its highest real part vanishes, whatever
+/// rounding would leave of it.
+pub(super) fn loop_parts(b: f64) -> [Polynomial; 2] {
+    let square = exactly(b).times(exactly(b));
+    let velocity = Polynomial::of(3, |k| match k {
+        0 => exactly(b),
+        1 => exactly(1.0).minus(square),
+        2 => exactly(0.0),
+        _ => exactly(1.0),
+    });
+    [conjugate(&polynomial(&open_loop_coefficients(b))), velocity]
 }
 
 impl Setting {
-    /// λ.
-    fn lambda(&self) -> Complex {
-        Complex::of([-self.decay, 0.0], [0.0, 1.0])
-    }
-
-    /// A.
-    fn feedback(&self) -> Complex {
+    /// A as a polynomial in λ.
+    fn feedback(&self) -> Polynomial {
         let Groups { b, a_v, a_n } = self.groups;
-        Complex::of([feedback(a_n, a_v, b - self.decay), 0.0], [0.0, a_v])
+        polynomial(&[a_n]).plus(&polynomial(&[b, 1.0]), a_v)
     }
 
-    /// B.
-    fn open_loop(&self) -> Complex {
-        let (b, s) = (self.groups.b, self.decay);
-        Complex::of([1.0 + s * (s - b), 0.0, -1.0], [0.0, b - 2.0 * s, 0.0])
+    /// B as a polynomial in λ.
+    fn open_loop(&self) -> Polynomial {
+        polynomial(&open_loop_coefficients(self.groups.b))
     }
 
-    /// e^(στ), the size of E.
-    fn size_of_delayed(&self) -> f64 {
-        exp(self.decay * self.tau)
+    /// A polynomial in λ as one in iω, times the conjugate of another.
+    fn product(&self, one: &Polynomial, other: &Polynomial) -> Polynomial {
+        on_line(-self.decay, one, other)
     }
 
-    /// The left side of (2).
-    fn slope_equation(&self) -> TrigPolynomial {
-        let Groups { a_v, a_n, .. } = self.groups;
-        let (s, q) = (self.decay, self.size_of_delayed());
-        let lambda = self.lambda();
-        let square = Complex::of([1.0 + s * s, 0.0, -1.0], [0.0, -2.0 * s, 0.0]);
-        let gains = Complex::of([a_n - a_v * s, 0.0], [0.0, a_v]);
-        // N M* = u λ* − a_v u S* − w λ* S + a_v w |S|².
-        let free = square.times(lambda.conjugate());
-        let mixed = gains.times(lambda.conjugate());
-        let [u, w] = [square, gains];
-        let scaled = |polynomial: Polynomial, by: f64| Polynomial::default().plus(polynomial, by);
-        // Im[z S] = z_i (1 − q cos) + z_r q sin, Im[z S*] = z_i (1 − q cos) − z_r q sin.
-        let even = scaled(u.im, -a_v).plus(mixed.im, -1.0);
-        let square_of_s = scaled(w.im, a_v);
-        TrigPolynomial {
-            free: free.im.plus(even, 1.0).plus(square_of_s, 1.0 + q * q),
-            cosine: scaled(even, -q).plus(square_of_s, -2.0 * q),
-            sine: scaled(u.re, a_v * q).plus(mixed.re, -q),
-            t: self.tau,
-        }
+    /// q = e^(στ), the size of E.
+    fn size_of_delayed(&self) -> Rounded {
+        growth(self.decay * self.tau)
     }
 
     fn at(&self, omega: f64) -> Values {
@@ -193,7 +152,7 @@ impl Setting {
 }
 
 impl OnLine for Setting {
-    type Function = trig_polynomial::Jet;
+    type Function = Sum;
 
     const STEPS: u32 = 48;
 
@@ -222,26 +181,20 @@ impl OnLine for Setting {
         enclosure::root_bound(b, a_v, a_n, control) * (1.0 + 1e-12)
     }
 
-    fn gain(&self) -> trig_polynomial::Jet {
-        let product = self.feedback().times(self.open_loop().conjugate());
+    fn gain(&self) -> Sum {
         if self.decay == 0.0 {
-            let on_axis = TrigPolynomial {
-                free: Polynomial::default(),
-                cosine: product.re,
-                sine: product.im,
-                t: 0.5 * self.tau,
-            };
-            return on_axis.jet();
+            let Groups { b, a_v, a_n } = self.groups;
+            let [load, velocity] = loop_parts(b);
+            let mut terms = Terms::new(Part::Real);
+            terms.add(&load, exactly(a_n), 0.5 * self.tau);
+            terms.add(&velocity, exactly(a_v), 0.5 * self.tau);
+            return terms.sum();
         }
-        let q = self.size_of_delayed();
-        // S = 1 − q cos ωτ + i q sin ωτ.
-        let f = TrigPolynomial {
-            free: product.im,
-            cosine: Polynomial::default().plus(product.im, -q),
-            sine: Polynomial::default().plus(product.re, q),
-            t: self.tau,
-        };
-        f.jet()
+        let product = self.product(&self.feedback(), &self.open_loop());
+        let mut terms = Terms::new(Part::Imaginary);
+        terms.add(&product, exactly(1.0), 0.0);
+        terms.add(&product, self.size_of_delayed().scaled(-1.0), self.tau);
+        terms.sum()
     }
 
     fn gain_factor(&self, omega: f64) -> f64 {
@@ -254,8 +207,26 @@ impl OnLine for Setting {
         size / (product * at.difference).re
     }
 
-    fn slope(&self) -> trig_polynomial::Jet {
-        self.slope_equation().jet()
+    /// Im of N M* = u λ* − a_v u S* − w λ* S + a_v w |S|², u = λ² + 1, w = a_n + a_v λ. There u λ*
+    /// is iω³ and more, all the rest at most quadratic in ω: Cauchy's bound on the zeros.
+    fn slope(&self) -> (Sum, f64) {
+        let Groups { a_v, a_n, .. } = self.groups;
+        let (tau, q) = (self.tau, self.size_of_delayed());
+        let (square, gains) = (polynomial(&[1.0, 0.0, 1.0]), polynomial(&[a_n, a_v]));
+        let [own, late] = [square, gains].map(|of| self.product(&of, &Polynomial::variable()));
+        let [early, both] = [square, gains].map(|of| of.shifted(-self.decay));
+        let mut terms = Terms::new(Part::Imaginary);
+        terms.add(&own, exactly(1.0), 0.0);
+        terms.add(&late, exactly(-1.0), 0.0);
+        terms.add(&late, q, tau);
+        terms.add(&early, exactly(-a_v), 0.0);
+        terms.add(&early, q.scaled(a_v), -tau);
+        terms.add(&both, one_and(q.times(q)).scaled(a_v), 0.0);
+        terms.add(&both, q.scaled(-a_v), tau);
+        terms.add(&both, q.scaled(-a_v), -tau);
+        let sizes = terms.sizes();
+        let most = sizes.coefficients()[..3].iter().copied();
+        (terms.sum(), 1.0 + most.fold(0.0, f64::max))
     }
 
     fn slope_at(&self, omega: f64) -> f64 {
@@ -267,36 +238,19 @@ impl OnLine for Setting {
         -(n * m.conj()).re / m.norm_sqr()
     }
 
-    fn unit_loop(&self) -> trig_polynomial::Jet {
+    fn unit_loop(&self) -> Sum {
         let q = self.size_of_delayed();
-        let size = |z: Complex| z.re.times(z.re).plus(z.im.times(z.im), 1.0);
-        let feedback = size(self.feedback());
-        let open = size(self.open_loop());
-        let none = Polynomial::default();
-        let f = TrigPolynomial {
-            free: none.plus(open, -1.0).plus(feedback, 1.0 + q * q),
-            cosine: none.plus(feedback, -2.0 * q),
-            sine: none,
-            t: self.tau,
-        };
-        f.jet()
+        let [fed, own] = [self.feedback(), self.open_loop()].map(|of| self.product(&of, &of));
+        let mut terms = Terms::new(Part::Real);
+        terms.add(&own, exactly(-1.0), 0.0);
+        terms.add(&fed, one_and(q.times(q)), 0.0);
+        terms.add(&fed, q.scaled(-2.0), self.tau);
+        terms.sum()
     }
 
     fn negative_loop(&self, omega: f64) -> Complex64 {
         let at = self.at(omega);
         at.feedback * at.difference / at.open_loop
-    }
-
-    /// In (2) |uλ* + …| is ω³ and more, all the rest at most quadratic in ω.
-    fn slope_bound(&self) -> f64 {
-        let f = self.slope_equation();
-        let rest = |i: usize| {
-            let waves = f.cosine.0[i].abs() + f.sine.0[i].abs();
-            waves + if i < 3 { f.free.0[i].abs() } else { 0.0 }
-        };
-        // f = ∓ω³ + lower powers: Cauchy's bound on the zeros.
-        debug_assert_eq!((f.cosine.0[3], f.sine.0[3], f.free.0[4]), (0.0, 0.0, 0.0));
-        1.0 + (0..3).map(rest).fold(0.0, f64::max) / f.free.0[3].abs()
     }
 
     fn gain_bound(&self, factor: f64) -> f64 {

@@ -37,9 +37,8 @@
 //! - `not_stable`: settings around one that are not stable
 //! - `radius`: the stability radius, proved
 //! - `setting`: a setting, the letter's own or one beyond it
+//! - `sum`: functions of ω that swing with several delays, as the left sides of these equations do
 //! - `surroundings`: the settings around a setting: what D depends on, which are stable
-//! - `trig_polynomial`: functions that are polynomials in ω, sin tω and cos tω
-//! - `zeros`: all zeros of a function of ω in an interval
 
 mod affine;
 mod along;
@@ -53,15 +52,14 @@ mod nearest_change;
 mod not_stable;
 mod radius;
 mod setting;
+mod sum;
 mod surroundings;
-mod trig_polynomial;
-mod zeros;
 
 use std::f64::consts::TAU;
 
 use self::nearest_change::{Search, Side};
 use self::surroundings::{Surroundings, Third};
-use self::zeros::{Intervals, TooMany};
+use crate::linear::real_zeros::{TooMany, zeros};
 use crate::model::elementary::arg;
 
 pub use self::along::{MOST_VELOCITIES, delay, velocity};
@@ -78,7 +76,6 @@ pub use self::surroundings::Changes;
 /// All answers are for settings that are stable; NaN where a search was given up.
 #[derive(Debug, Default)]
 pub struct MarginSearch {
-    intervals: Intervals,
     changes: Vec<f64>,
 }
 
@@ -149,7 +146,7 @@ impl MarginSearch {
                     changes.push(factor);
                 }
             };
-            if case.stopped() || self.intervals.zeros(&f, (0.0, end), &mut keep).is_err() {
+            if case.stopped() || zeros(&f, end, &mut keep).is_err() {
                 return Limits {
                     lower: lower.unwrap_or(f64::NAN),
                     upper: f64::NAN,
@@ -182,7 +179,7 @@ impl MarginSearch {
     pub fn slope(&mut self, of: &impl AsCase) -> Limits {
         let case = of.case();
         let line = &case.on_line;
-        let f = line.slope();
+        let (f, end) = line.slope();
         self.changes.clear();
         let changes = &mut self.changes;
         let mut keep = |omega| {
@@ -191,8 +188,7 @@ impl MarginSearch {
                 changes.push(slope);
             }
         };
-        let end = line.slope_bound();
-        if self.intervals.zeros(&f, (0.0, end), &mut keep).is_err() {
+        if zeros(&f, end, &mut keep).is_err() {
             return Limits::UNDECIDED;
         }
         if case.setting.decay > 0.0 {
@@ -224,7 +220,7 @@ impl MarginSearch {
             return margins;
         }
         let mut latency = f64::INFINITY;
-        let searched = self.unit_loop(&case.on_line, |omega, angle| {
+        let searched = Self::unit_loop(&case.on_line, |omega, angle| {
             margins.phase = margins.phase.min(angle.abs());
             let ahead = if angle > 0.0 { angle } else { angle + TAU };
             latency = latency.min(ahead / omega);
@@ -257,23 +253,18 @@ impl MarginSearch {
             return f64::INFINITY;
         }
         let mut phase = f64::INFINITY;
-        match self.unit_loop(&case.on_line, |_, angle| phase = phase.min(angle.abs())) {
+        match Self::unit_loop(&case.on_line, |_, angle| phase = phase.min(angle.abs())) {
             Ok(()) => phase,
             Err(TooMany) => f64::NAN,
         }
     }
 
     /// Tells `each` the frequencies at which |L| = 1, and arg(−L) there.
-    fn unit_loop(
-        &mut self,
-        line: &impl OnLine,
-        mut each: impl FnMut(f64, f64),
-    ) -> Result<(), TooMany> {
+    fn unit_loop(line: &impl OnLine, mut each: impl FnMut(f64, f64)) -> Result<(), TooMany> {
         let end = line.unit_loop_bound();
-        self.intervals
-            .zeros(&line.unit_loop(), (0.0, end), |omega| {
-                each(omega, arg(line.negative_loop(omega)));
-            })
+        zeros(&line.unit_loop(), end, |omega| {
+            each(omega, arg(line.negative_loop(omega)));
+        })
     }
 }
 

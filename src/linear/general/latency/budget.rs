@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::wave::MOST_STEPS;
+use crate::linear::real_zeros::MOST_STEPS;
 
 /// Steps along the frequency that all counts of one cell may take together. Where roots are not
 /// crowded a cell takes some thousands.

@@ -9,13 +9,13 @@ use std::f64::consts::{PI, TAU};
 
 use super::super::parts::{Angle, FeedbackForm};
 use super::super::right_of::{Factors, RootCounter, SAME_TURN};
-use super::super::switches::{Switch, Switches};
+use super::super::switches::Switches;
 use super::super::system::Class;
 use super::super::turning::{NoNumber, RightOf, Turn, Turning, WholeTurns};
 use super::on_line::{Form, OnLine};
 use super::sum::Sum;
-use super::wave::TooMany;
 use super::window::Window;
+use crate::linear::real_zeros::{Switch, TooMany};
 use crate::model::Channel;
 use crate::model::elementary::{arg, atan2, sincos};
 

@@ -6,7 +6,7 @@
 //!
 //! - [`budget`]: how much counting may still be done for a cell
 //! - [`wave`]: functions that swing with one delay, and all their zeros
-//! - [`prepared`]: such a function and its slope at one frequency, with bounds; steps and zeros
+//! - [`prepared`]: such a function and its slope at one frequency, with bounds
 //! - [`window`]: where zeros of a polynomial can be
 //! - [`on_line`]: D on a vertical line in its two forms
 //! - [`sum`]: the argument of a sum of two terms along a line

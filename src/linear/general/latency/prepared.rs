@@ -1,16 +1,13 @@
-//! A function that swings with one delay with all that is evaluated of it at one frequency, side by
-//! side; the longest steps that cannot step over a zero.
+//! A function that swings with one delay, with all that is evaluated of it at one frequency side by
+//! side.
 
 use super::super::polynomial::{MOST_DEGREE, Polynomial};
+use crate::linear::real_zeros::{At, RealFunction};
 use crate::linear::rounded::Rounded;
 use crate::model::elementary::sincos;
 
 /// Rounded operations behind each value, in units of ε of its terms.
 const ROUNDINGS: f64 = 4.0;
-/// What rounding of the length of a step itself may add to it.
-const A_LITTLE_LESS: f64 = 1.0 - 1e-9;
-/// The most steps of Newton's method, with halvings between, until a zero is polished.
-const MOST_POLISHINGS: usize = 100;
 const VALUES: usize = 6;
 const ERRORS: usize = 5;
 const BENDS: usize = 2;
@@ -26,22 +23,6 @@ pub(super) struct Prepared {
     bends: [[f64; BENDS]; LENGTH],
     length: usize,
     t: f64,
-}
-
-/// f and f′ at one frequency with bounds on their errors.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct At {
-    pub omega: f64,
-    pub value: Rounded,
-    pub slope: Rounded,
-}
-
-impl At {
-    /// The sign of f, or none where it is lost.
-    #[inline]
-    pub(super) fn sign(&self) -> Option<bool> {
-        self.value.decided().then_some(self.value.value > 0.0)
-    }
 }
 
 #[inline]
@@ -108,9 +89,11 @@ impl Prepared {
         }
         prepared
     }
+}
 
+impl RealFunction for Prepared {
     #[inline]
-    pub(super) fn at(&self, omega: f64) -> At {
+    fn at(&self, omega: f64) -> At {
         let x = omega * omega;
         let [u, v, w, u_slope, v_slope, w_slope] = horner(&self.values[..self.length], x);
         let errors = horner(&self.errors[..self.length], x);
@@ -139,86 +122,9 @@ impl Prepared {
         }
     }
 
-    /// M up to `omega`.
     #[inline]
-    pub(super) fn bend(&self, omega: f64) -> f64 {
+    fn bend(&self, omega: f64) -> f64 {
         let [even, odd] = horner(&self.bends[..self.length], omega * omega);
         even + omega * odd
-    }
-
-    /// A step from `from` within which f has one zero at most, no longer than `longest`, and
-    /// whether it can have one.
-    #[inline]
-    pub(super) fn step(&self, from: &At, longest: f64) -> (f64, bool) {
-        let bend = self.bend(from.omega + longest);
-        let left = from.value.value.abs() - from.value.error;
-        let falling = -from
-            .slope
-            .value
-            .copysign(from.slope.value * from.value.value);
-        let falling = falling + from.slope.error;
-        let root = (falling * falling + 2.0 * bend * left).sqrt();
-        let clear = if falling > 0.0 {
-            2.0 * left / (falling + root)
-        } else {
-            (root - falling) / bend
-        };
-        let monotone = (from.slope.value.abs() - from.slope.error) / bend;
-        if clear >= monotone {
-            (A_LITTLE_LESS * clear, false)
-        } else {
-            (A_LITTLE_LESS * monotone, true)
-        }
-    }
-
-    /// The zero between `from` and `to`, at which the signs of f differ, f being monotone between;
-    /// with a bound on its error.
-    pub(super) fn polish(&self, from: &At, to: &At, precision: f64) -> (f64, f64) {
-        let rising = to.value.value > 0.0;
-        let (mut low, mut high) = (from.omega, to.omega);
-        let start = if from.value.value.abs() < to.value.value.abs() {
-            from
-        } else {
-            to
-        };
-        let mut at = *start;
-        let mut last = f64::INFINITY;
-        for _ in 0..MOST_POLISHINGS {
-            let newton = at.omega - at.value.value / at.slope.value;
-            let step = (newton - at.omega).abs();
-            let inside = low < newton && newton < high && step < 0.5 * last;
-            if inside && step <= precision.max(4.0 * f64::EPSILON) * at.omega {
-                break;
-            }
-            let next = if inside { newton } else { 0.5 * (low + high) };
-            last = if inside { step } else { high - low };
-            if next <= low || next >= high {
-                break;
-            }
-            at = self.at(next);
-            if (at.value.value > 0.0) == rising {
-                high = next;
-            } else {
-                low = next;
-            }
-            if !at.value.decided() {
-                break;
-            }
-        }
-        (at.omega, self.error(&at, (from.omega, to.omega)))
-    }
-
-    /// How far the zero of f can be from where `at` is; f is monotone in the range.
-    fn error(&self, at: &At, (from, to): (f64, f64)) -> f64 {
-        let above = at.value.value.abs() + at.value.error;
-        let slope = at.slope.value.abs() - at.slope.error;
-        let near = 2.0 * above / slope;
-        // With |f′| at least half of what it is here, the zero is no farther than that.
-        let error = if near > 0.0 && self.bend(at.omega + near) * near <= 0.5 * slope {
-            near
-        } else {
-            (to - at.omega).max(at.omega - from)
-        };
-        error + f64::EPSILON * at.omega
     }
 }

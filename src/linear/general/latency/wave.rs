@@ -3,36 +3,16 @@
 //! ```text
 //! f(ω) = u(x) + v(x)(1 − cos ωt) + ω w(x) sin ωt,   x = ω²                                   (1)
 //! ```
-//!
-//! The zeros are found by going along ω in steps that nothing can be hidden in. With M ≥ |f″| from
-//! absolute coefficients up to the end of a step h from ω, there is
-//!
-//! ```text
-//! no zero             where |f| − h max(0, −sgn(f) f′) − M h²/2 > 0,                         (2)
-//! at most one zero    where |f′| > M h.                                                      (3)
-//! ```
-//!
-//! The longer of the two steps is taken: one evaluation a step. Where both come to nothing the sign
-//! of f is lost in rounding, as at a touch. Such a stretch is told as it is, with the signs of f on
-//! both sides.
 
 use super::super::polynomial::Polynomial;
-use super::super::switches::{Switch, Switches, direction};
-use super::prepared::{At, Prepared};
+use super::super::switches::Switches;
+use super::prepared::Prepared;
 use super::window::Window;
+use crate::linear::real_zeros::{
+    At, MOST_STEPS, RealFunction, Search, Switch, TooMany, lowest_decided, zeros_from,
+};
 use crate::linear::rounded::Rounded;
 use crate::model::elementary::power;
-
-/// Steps after which the zeros are too many to be listed.
-pub(super) const MOST_STEPS: u64 = 1 << 17;
-/// A step is at most this many times as long as the step before: the bound M belongs to its end.
-const GROWTH: f64 = 2.0;
-/// The part of the way to the last zero that is tried as the first step.
-const FIRST_STEP: f64 = 1.0 / 16.0;
-/// Steps shorter than this part of ω lead nowhere.
-const SHORTEST_STEP: f64 = 1e-13;
-/// Halvings of ω from the last zero down until the sign of f near 0 is known.
-const MOST_HALVINGS: i32 = 60;
 
 /// The function (1).
 #[derive(Debug, Clone, Copy)]
@@ -41,88 +21,6 @@ pub(crate) struct Wave {
     pub parts: [Polynomial; 3],
     /// t ≥ 0.
     pub t: f64,
-}
-
-/// The zeros are too many to be listed, or their number is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct TooMany;
-
-/// A part of the way from one known sign of f to the next.
-struct Way<'p> {
-    prepared: &'p Prepared,
-    /// The last place with a known sign.
-    here: At,
-    step: f64,
-    to: f64,
-    precision: f64,
-}
-
-impl Way<'_> {
-    /// Goes one step on; the switch that lies in it, if one does.
-    fn go(&mut self) -> Option<Switch> {
-        let from = self.here;
-        let longest = GROWTH * self.step;
-        let (step, monotone) = self.prepared.step(&from, longest);
-        let step = step.min(longest);
-        if step < SHORTEST_STEP * from.omega {
-            return self.leap(&from);
-        }
-        for part in [1.0, 0.9, 0.77, 0.6, 0.4] {
-            let omega = from.omega + part * step;
-            let there = self.prepared.at(omega);
-            let Some(sign) = there.sign() else { continue };
-            self.here = there;
-            self.step = part * step;
-            let before = from.value.value > 0.0;
-            if sign == before {
-                return None;
-            }
-            if monotone {
-                let (omega, error) = self.prepared.polish(&from, &there, self.precision);
-                return Some(Switch {
-                    omega,
-                    error,
-                    sign: direction(before, sign),
-                    simple: true,
-                });
-            }
-            return Some(between(&from, &there));
-        }
-        self.leap(&from)
-    }
-
-    /// Goes over a stretch on which the sign of f is lost.
-    fn leap(&mut self, from: &At) -> Option<Switch> {
-        let mut step = SHORTEST_STEP * from.omega.max(1e-3 * self.to);
-        loop {
-            let there = self.prepared.at(from.omega + step);
-            if there.value.decided() {
-                self.here = there;
-                self.step = step;
-                return Some(between(from, &there));
-            }
-            if there.omega > self.to {
-                // Beyond the last zero: its sign is that of the highest coefficient.
-                self.here = there;
-                self.step = step;
-                let mut end = there;
-                end.value.value = 1.0;
-                return Some(between(from, &end));
-            }
-            step *= 1.5;
-        }
-    }
-}
-
-/// All that may lie between two places with known signs of f, as one switch.
-fn between(from: &At, to: &At) -> Switch {
-    let omega = 0.5 * (from.omega + to.omega);
-    Switch {
-        omega,
-        error: 0.5 * (to.omega - from.omega) + f64::EPSILON * omega,
-        sign: direction(from.value.value > 0.0, to.value.value > 0.0),
-        simple: false,
-    }
 }
 
 /// What is known of f near 0.
@@ -146,7 +44,7 @@ impl Wave {
         &self,
         window: Window,
         (precision, left): (f64, &mut u64),
-        mut found: impl FnMut(Switch) -> bool,
+        found: impl FnMut(Switch) -> bool,
     ) -> Result<Start, TooMany> {
         let Window { from, to } = window;
         if to == 0.0 || (from >= to && self.parts[0].coefficient(0).value > 0.0) {
@@ -157,25 +55,8 @@ impl Wave {
         }
         let prepared = Prepared::new(&self.parts, self.t);
         let (here, start) = self.start(&prepared, window)?;
-        let mut way = Way {
-            prepared: &prepared,
-            here,
-            step: 0.5 * FIRST_STEP * (to - here.omega),
-            to,
-            precision,
-        };
-        while *left > 0 {
-            if way.here.omega >= to {
-                return Ok(start);
-            }
-            *left -= 1;
-            if let Some(switch) = way.go()
-                && !found(switch)
-            {
-                return Err(TooMany);
-            }
-        }
-        Err(TooMany)
+        zeros_from(&prepared, here, Search { to, precision }, left, found)?;
+        Ok(start)
     }
 
     /// Lists all positive zeros in the window by falling frequency; see [`Wave::zeros`].
@@ -209,11 +90,7 @@ impl Wave {
         }
         // f = f(0) + c ω² to third order.
         let curvature = self.curvature();
-        let lowest = (0..=MOST_HALVINGS)
-            .rev()
-            .map(|halvings| prepared.at(window.to * power(0.5, halvings)))
-            .find(|here| here.value.decided());
-        let here = lowest.ok_or(TooMany)?;
+        let here = lowest_decided(prepared, window.to).ok_or(TooMany)?;
         let third = self.third(here.omega);
         let size = curvature.value.abs() - curvature.error;
         let parabola = size > 0.0 && third * here.omega <= 3.0 * size;

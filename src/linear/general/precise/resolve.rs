@@ -1,10 +1,10 @@
 //! The crossings at zeros of F that f64 blurs.
 
 use super::super::parts::Angle;
-use super::super::switches::Switch;
 use super::super::system::System;
 use super::number::{Number, UNIT};
 use super::on_axis::{At, OnAxis};
+use crate::linear::real_zeros::Switch;
 
 /// A phase is blurred where its error may be larger than this: in systems up to the degree of a
 /// feedback loop, and above. The bounds of ordinary systems grow with the degree, and are not to

@@ -24,17 +24,16 @@
 
 use num_complex::Complex64;
 
-use super::super::equations::{OnLine, UpTo};
+use super::super::equations::{OnLine, UpTo, loop_parts};
 use super::super::setting::Setting;
+use super::super::sum::{Part, Sum, Terms, conjugate, exactly, growth, on_line, one_and};
 use super::feedback::Beyond;
-use super::sum::{Part, Sum, Terms, conjugate};
 use crate::linear::characteristic::{late, one_minus_exp};
-use crate::linear::feedback_loop::{polynomial, times};
+use crate::linear::feedback_loop::{LagPolynomials, polynomial, times};
 use crate::linear::general::{DelayLine, Polynomial, System};
 use crate::linear::rounded::Rounded;
 use crate::linear::stable_delays::StableInterval;
 use crate::model::Groups;
-use crate::model::elementary::exp;
 
 /// A setting with what its feedback has beyond the letter's own.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +43,7 @@ pub struct Equations {
     /// B and A as polynomials in λ.
     open: Polynomial,
     gain: Polynomial,
+    lags: LagPolynomials,
     /// q and p.
     delayed: Rounded,
     late: Rounded,
@@ -61,27 +61,6 @@ struct Values {
     passed: Complex64,
 }
 
-const fn exactly(value: f64) -> Rounded {
-    Rounded { value, error: 0.0 }
-}
-
-/// e^x, x being a rounded product.
-fn growth(x: f64) -> Rounded {
-    let value = exp(x);
-    Rounded {
-        value,
-        error: if x == 0.0 {
-            0.0
-        } else {
-            f64::EPSILON * value * (2.0 + 2.0 * x.abs())
-        },
-    }
-}
-
-fn plus(a: Rounded, b: Rounded) -> Rounded {
-    Rounded::sum([a.value, b.value]).plus_error(a.error + b.error)
-}
-
 impl Equations {
     pub(in super::super) fn new(setting: &Setting, beyond: &Beyond) -> Self {
         let [open, gain] = beyond.of_groups(setting.groups).polynomials();
@@ -90,6 +69,7 @@ impl Equations {
             beyond: *beyond,
             open,
             gain,
+            lags: beyond.lag_polynomials(),
             delayed: growth(setting.decay * setting.tau),
             late: growth(setting.decay * beyond.channel.latency),
         }
@@ -97,29 +77,21 @@ impl Equations {
 
     /// A polynomial in λ as one in iω, times the conjugate of another.
     fn product(&self, one: &Polynomial, other: &Polynomial) -> Polynomial {
-        let [one, other] = [one, other].map(|p| p.shifted(-self.setting.decay));
-        times(&one, &conjugate(&other))
+        on_line(-self.setting.decay, one, other)
     }
 
-    /// A B*. On the imaginary axis (b + λ)(λ² + bλ + 1)* is b + (1 − b²)λ + λ³: its highest real
-    /// part vanishes, whatever rounding would leave of it.
+    /// A B*.
     fn loop_product(&self) -> Polynomial {
         let Setting { groups, decay, .. } = self.setting;
         if decay > 0.0 {
             return self.product(&self.gain, &self.open);
         }
-        let Groups { b, a_v, a_n } = groups;
-        let lags = self.beyond.lag_polynomials();
-        let moving = Polynomial::of(3, |k| match k {
-            0 => exactly(b),
-            1 => plus(exactly(1.0), exactly(-b).times(exactly(b))),
-            2 => exactly(0.0),
-            _ => exactly(1.0),
-        });
-        let load = times(&polynomial(&[1.0, -b, 1.0]), &lags.velocity);
-        let velocity = times(&moving, &lags.load);
-        let both = Polynomial::ZERO.plus(&load, a_n).plus(&velocity, a_v);
-        times(&both, &conjugate(&lags.all))
+        let [load, velocity] = loop_parts(groups.b);
+        let load = times(&load, &self.lags.velocity);
+        let velocity = times(&velocity, &self.lags.load);
+        let both = Polynomial::ZERO.plus(&load, groups.a_n);
+        let both = both.plus(&velocity, groups.a_v);
+        times(&both, &conjugate(&self.lags.all))
     }
 
     fn values(&self, omega: f64) -> Values {
@@ -140,53 +112,66 @@ impl Equations {
     /// u, v, w and y of (3).
     fn of_slope(&self) -> [Polynomial; 4] {
         let Groups { a_v, a_n, .. } = self.setting.groups;
-        let lags = self.beyond.lag_polynomials();
-        let y = Polynomial::ZERO.plus(&lags.load, a_v);
+        let y = Polynomial::ZERO.plus(&self.lags.load, a_v);
         let variable = Polynomial::variable();
         [
-            times(&polynomial(&[1.0, 0.0, 1.0]), &lags.all),
-            times(&variable, &lags.all),
-            times(&variable, &y).plus(&lags.velocity, a_n),
+            times(&polynomial(&[1.0, 0.0, 1.0]), &self.lags.all),
+            times(&variable, &self.lags.all),
+            times(&variable, &y).plus(&self.lags.velocity, a_n),
             y,
         ]
     }
 
-    /// The left side of (3) without |1 − R E|² Im[u v*], and with it.
-    fn slope_terms(&self) -> [Terms; 2] {
+    /// The left side of (3) without |1 − R E|² Im[u v*].
+    fn rest_of_slope(&self, [u, v, w, y]: &[Polynomial; 4]) -> Terms {
         let (tau, latency) = (self.setting.tau, self.beyond.channel.latency);
         let (memory, q, p) = (self.beyond.channel.memory, self.delayed, self.late);
         let square = q.times(q);
-        let [u, v, w, y] = self.of_slope();
         let minus = |number: Rounded| number.scaled(-1.0);
-        let one_and = |number: Rounded| plus(exactly(1.0), number);
         // (1 − E)(1 − R E*) with its times.
         let mixed = [
             (one_and(square.scaled(memory)), 0.0),
             (minus(q), tau),
             (q.scaled(-memory), -tau),
         ];
-        let late = self.product(&w, &v);
-        let early = self.product(&u, &y);
-        let both = self.product(&w, &y);
+        let late = self.product(w, v);
+        let early = self.product(u, y);
+        let both = self.product(w, y);
         let mut rest = Terms::new(Part::Imaginary);
         for (weight, t) in mixed {
             let weight = minus(weight.times(p));
-            rest = rest.plus(&late, weight, latency + t);
-            rest = rest.plus(&early, weight, -(latency + t));
+            rest.add(&late, weight, latency + t);
+            rest.add(&early, weight, -(latency + t));
         }
         // p² |1 − E|², where cos ωτ is e^(−iωτ) and its conjugate.
         let twice = p.times(p);
         let turned = minus(q.times(twice));
-        rest = rest.plus(&both, one_and(square).times(twice), 0.0);
-        rest = rest.plus(&both, turned, tau).plus(&both, turned, -tau);
-        let own = self.product(&u, &v);
-        let kept = one_and(square.scaled(memory * memory));
-        let turned = q.scaled(-memory);
-        let mut all = rest.clone().plus(&own, kept, 0.0);
-        if memory != 0.0 {
-            all = all.plus(&own, turned, tau).plus(&own, turned, -tau);
+        rest.add(&both, one_and(square).times(twice), 0.0);
+        rest.add(&both, turned, tau);
+        rest.add(&both, turned, -tau);
+        rest
+    }
+
+    /// The ω beyond which no root of any slope lies on the line, where all of (3) but
+    /// |1 − R E|² Im[u v*] is at most `rest`.
+    ///
+    /// Beyond ω = 1 the highest power outweighs all others where (1 − |R|q)² |L|² ω(ω² + σ² − 1)
+    /// does.
+    fn slope_bound(&self, rest: &Polynomial) -> f64 {
+        let kept =
+            1.0 - self.beyond.channel.memory.abs() * (self.delayed.value + self.delayed.error);
+        if kept.is_nan() || kept <= 0.0 {
+            return f64::INFINITY;
         }
-        [rest, all]
+        let all = &self.lags.all;
+        // |L|² is even in ω, and all its powers are positive.
+        let lags = self.product(all, all);
+        let even = Polynomial::of(lags.degree(), |k| exactly(lags.coefficient(k).value.abs()));
+        let decay = self.setting.decay;
+        let weight = kept * kept * (1.0 - 1e-9);
+        let own = polynomial(&[0.0, weight * (decay * decay - 1.0), 0.0, weight]);
+        let left = times(&even, &own).plus(rest, -1.0);
+        left.beyond_zeros().max(1.0)
     }
 
     fn system(&self, factor: f64) -> System {
@@ -227,20 +212,17 @@ impl OnLine for Equations {
         let memory = self.beyond.channel.memory;
         if self.setting.decay == 0.0 {
             let half = 0.5 * tau;
-            let mut terms = Terms::new(Part::Real).plus(&product, exactly(1.0), latency + half);
-            if memory != 0.0 {
-                terms = terms.plus(&product, exactly(-memory), latency - half);
-            }
+            let mut terms = Terms::new(Part::Real);
+            terms.add(&product, exactly(1.0), latency + half);
+            terms.add(&product, exactly(-memory), latency - half);
             return terms.sum();
         }
         let q = self.delayed;
-        let constant = plus(exactly(1.0), q.times(q).scaled(memory));
-        let mut terms = Terms::new(Part::Imaginary)
-            .plus(&product, constant, latency)
-            .plus(&product, q.scaled(-1.0), latency + tau);
-        if memory != 0.0 {
-            terms = terms.plus(&product, q.scaled(-memory), latency - tau);
-        }
+        let constant = one_and(q.times(q).scaled(memory));
+        let mut terms = Terms::new(Part::Imaginary);
+        terms.add(&product, constant, latency);
+        terms.add(&product, q.scaled(-1.0), latency + tau);
+        terms.add(&product, q.scaled(-memory), latency - tau);
         terms.sum()
     }
 
@@ -282,9 +264,16 @@ impl OnLine for Equations {
     }
 
     /// The left side of (3).
-    fn slope(&self) -> Sum {
-        let [_, all] = self.slope_terms();
-        all.sum()
+    fn slope(&self) -> (Sum, f64) {
+        let (tau, memory, q) = (self.setting.tau, self.beyond.channel.memory, self.delayed);
+        let of_slope = self.of_slope();
+        let own = self.product(&of_slope[0], &of_slope[1]);
+        let mut terms = self.rest_of_slope(&of_slope);
+        let bound = self.slope_bound(&terms.sizes());
+        terms.add(&own, one_and(q.times(q).scaled(memory * memory)), 0.0);
+        terms.add(&own, q.scaled(-memory), tau);
+        terms.add(&own, q.scaled(-memory), -tau);
+        (terms.sum(), bound)
     }
 
     fn slope_at(&self, omega: f64) -> f64 {
@@ -295,26 +284,6 @@ impl OnLine for Equations {
         -(constant * linear.conj()).re / linear.norm_sqr()
     }
 
-    /// Beyond ω = 1 the highest power outweighs all others where (1 − |R|q)² |L|² ω(ω² + σ² − 1)
-    /// does.
-    fn slope_bound(&self) -> f64 {
-        let kept =
-            1.0 - self.beyond.channel.memory.abs() * (self.delayed.value + self.delayed.error);
-        if kept.is_nan() || kept <= 0.0 {
-            return f64::INFINITY;
-        }
-        let all = self.beyond.lag_polynomials().all;
-        // |L|² is even in ω, and all its powers are positive.
-        let lags = self.product(&all, &all);
-        let even = Polynomial::of(lags.degree(), |k| exactly(lags.coefficient(k).value.abs()));
-        let decay = self.setting.decay;
-        let weight = kept * kept * (1.0 - 1e-9);
-        let own = polynomial(&[0.0, weight * (decay * decay - 1.0), 0.0, weight]);
-        let [rest, _] = self.slope_terms();
-        let left = times(&even, &own).plus(&rest.sizes(), -1.0);
-        left.beyond_zeros().max(1.0)
-    }
-
     /// |N|² − |M|².
     fn unit_loop(&self) -> Sum {
         let (memory, q) = (self.beyond.channel.memory, self.delayed);
@@ -323,15 +292,12 @@ impl OnLine for Equations {
         let fed = fed.scaled(self.late.times(self.late));
         let own = self.product(&self.open, &self.open);
         let tau = self.setting.tau;
-        let one_and = |number: Rounded| plus(exactly(1.0), number);
         let kept = one_and(square.scaled(memory * memory));
-        let mut terms = Terms::new(Part::Real)
-            .plus(&fed, one_and(square), 0.0)
-            .plus(&own, kept.scaled(-1.0), 0.0)
-            .plus(&fed, q.scaled(-2.0), tau);
-        if memory != 0.0 {
-            terms = terms.plus(&own, q.scaled(2.0 * memory), tau);
-        }
+        let mut terms = Terms::new(Part::Real);
+        terms.add(&fed, one_and(square), 0.0);
+        terms.add(&own, kept.scaled(-1.0), 0.0);
+        terms.add(&fed, q.scaled(-2.0), tau);
+        terms.add(&own, q.scaled(2.0 * memory), tau);
         terms.sum()
     }
 

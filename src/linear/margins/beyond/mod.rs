@@ -9,12 +9,10 @@
 //! - `equations`: where a root lies on the line, as one real equation in ω for each way in which a
 //!   setting can change
 //! - `highest`: frequencies beyond which no root lies on the line
-//! - `sum`: the left sides of these equations, which swing with several delays
 
 mod equations;
 mod feedback;
 mod highest;
-mod sum;
 
 pub use self::equations::Equations;
 pub use self::feedback::Beyond;

@@ -11,10 +11,11 @@
 //! Bounds on the rounding of f and f′ and on |f″| are polynomials in ω made of absolute
 //! coefficients.
 
-use super::super::zeros::{Bounded, Wave};
-use crate::linear::general::Polynomial;
+use crate::linear::feedback_loop::{polynomial, times};
+use crate::linear::general::{Polynomial, product};
+use crate::linear::real_zeros::{At, RealFunction};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::sincos;
+use crate::model::elementary::{exp, sincos};
 
 /// The most delays of one sum.
 const MOST_TERMS: usize = 5;
@@ -32,53 +33,79 @@ pub(super) enum Part {
     Imaginary,
 }
 
+/// A term of a function (1).
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    /// Z, the constant first.
+    z: [Rounded; LENGTH],
+    degree: usize,
+    t: f64,
+}
+
 /// The terms of a function (1).
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Terms {
     part: Part,
-    list: [(Polynomial, f64); MOST_TERMS],
+    list: [Term; MOST_TERMS],
     count: usize,
 }
 
 impl Terms {
     pub(super) fn new(part: Part) -> Self {
+        let none = Term {
+            z: [exactly(0.0); LENGTH],
+            degree: 0,
+            t: 0.0,
+        };
         Self {
             part,
-            list: [(Polynomial::ZERO, 0.0); MOST_TERMS],
+            list: [none; MOST_TERMS],
             count: 0,
         }
     }
 
-    /// These terms and `weight` · Z e^(−iωt), t of either sign; at most five sizes of t.
-    pub(super) fn plus(mut self, z: &Polynomial, weight: Rounded, t: f64) -> Self {
-        let mut scaled = z.scaled(weight);
-        if t < 0.0 {
+    /// Adds `weight` · Z e^(−iωt), t of either sign; at most five sizes of t.
+    pub(super) fn add(&mut self, z: &Polynomial, weight: Rounded, t: f64) {
+        if weight.value == 0.0 && weight.error == 0.0 {
+            return;
+        }
+        let term = self.with(t.abs());
+        let imaginary = self.part == Part::Imaginary;
+        let Term { z: sum, degree, .. } = &mut self.list[term];
+        *degree = z.degree().max(*degree);
+        for (k, sum) in sum[..=z.degree()].iter_mut().enumerate() {
+            let mut c = product(z.coefficient(k), weight);
             // Z e^(iω|t|) is the conjugate of Z* e^(−iω|t|).
-            scaled = conjugate(&scaled);
-            if self.part == Part::Imaginary {
-                scaled = Polynomial::ZERO.plus(&scaled, -1.0);
+            if t < 0.0 && (k % 2 == 1) != imaginary {
+                c.value = -c.value;
             }
+            *sum = plus(*sum, c);
         }
-        let list = &mut self.list[..self.count];
-        if let Some((sum, _)) = list.iter_mut().find(|(_, other)| *other == t.abs()) {
-            *sum = sum.plus(&scaled, 1.0);
-        } else {
-            self.list[self.count] = (scaled, t.abs());
+    }
+
+    /// The number of the term that turns with `t` ≥ 0.
+    fn with(&mut self, t: f64) -> usize {
+        let known = self.list[..self.count].iter().position(|term| term.t == t);
+        known.unwrap_or_else(|| {
+            self.list[self.count].t = t;
             self.count += 1;
-        }
-        self
+            self.count - 1
+        })
+    }
+
+    fn all(&self) -> &[Term] {
+        &self.list[..self.count]
     }
 
     /// Σ (|c_k| + e_k) of all terms, for every power of ω: |f| is at most that polynomial.
     pub(super) fn sizes(&self) -> Polynomial {
-        let terms = &self.list[..self.count];
-        let degree = terms.iter().map(|(z, _)| z.degree()).max().unwrap_or(0);
+        let degree = self.all().iter().map(|term| term.degree).max();
         let size = |k: usize| {
-            let of = terms.iter().map(|(z, _)| z.coefficient(k));
+            let of = self.all().iter().map(|term| term.z[k]);
             of.map(|c| c.value.abs() + c.error).sum()
         };
         let sizes: [f64; LENGTH] = std::array::from_fn(size);
-        crate::linear::feedback_loop::polynomial(&sizes[..=degree])
+        polynomial(&sizes[..=degree.unwrap_or(0)])
     }
 
     /// The function of ω whose zeros are searched for.
@@ -87,20 +114,59 @@ impl Terms {
             part: self.part,
             waves: [Waves::NONE; MOST_TERMS],
             count: self.count,
-            error: [0.0; LENGTH + 1],
-            slope_error: [0.0; LENGTH + 1],
+            errors: [[0.0; 2]; LENGTH + 1],
             bend: [0.0; LENGTH],
             length: 0,
         };
-        for ((z, t), waves) in self.list[..self.count].iter().zip(&mut sum.waves) {
-            sum.length = sum.length.max(z.degree() + 1);
-            *waves = Waves::of(z, *t);
+        for (term, waves) in self.all().iter().zip(&mut sum.waves) {
+            sum.length = sum.length.max(term.degree + 1);
+            *waves = Waves::of(term);
         }
-        for (z, t) in &self.list[..self.count] {
-            sum.bound(z, *t);
+        for term in self.all() {
+            sum.bound(term);
         }
         sum
     }
+}
+
+/// The sum with its error; exact where one of both is 0.
+fn plus(a: Rounded, b: Rounded) -> Rounded {
+    let value = a.value + b.value;
+    let exact = a.value == 0.0 || b.value == 0.0;
+    let rounding = if exact { 0.0 } else { 0.5 * f64::EPSILON };
+    Rounded {
+        value,
+        error: a.error + b.error + rounding * value.abs(),
+    }
+}
+
+/// A number that is known.
+pub(super) const fn exactly(value: f64) -> Rounded {
+    Rounded { value, error: 0.0 }
+}
+
+/// 1 and a number.
+pub(super) fn one_and(number: Rounded) -> Rounded {
+    plus(exactly(1.0), number)
+}
+
+/// e^x, x being a rounded product.
+pub(super) fn growth(x: f64) -> Rounded {
+    let value = exp(x);
+    Rounded {
+        value,
+        error: if x == 0.0 {
+            0.0
+        } else {
+            f64::EPSILON * value * (2.0 + 2.0 * x.abs())
+        },
+    }
+}
+
+/// The product of `one` and the conjugate of `other`, polynomials in λ, on the line Re λ = `line`
+/// as a polynomial in iω.
+pub(super) fn on_line(line: f64, one: &Polynomial, other: &Polynomial) -> Polynomial {
+    times(&one.shifted(line), &conjugate(&other.shifted(line)))
 }
 
 /// Z* on the imaginary axis.
@@ -127,17 +193,18 @@ impl Waves {
         t: 0.0,
     };
 
-    fn of(z: &Polynomial, t: f64) -> Self {
+    fn of(term: &Term) -> Self {
+        let t = term.t;
         let mut waves = Self {
             t,
-            length: z.degree() / 2 + 1,
+            length: term.degree / 2 + 1,
             ..Self::NONE
         };
         // i² = −1.
         let signed = |k: usize| match k {
-            k if k > z.degree() => 0.0,
-            k if (k / 2) % 2 == 1 => -z.coefficient(k).value,
-            k => z.coefficient(k).value,
+            k if k > term.degree => 0.0,
+            k if (k / 2) % 2 == 1 => -term.z[k].value,
+            k => term.z[k].value,
         };
         for (j, of) in waves.coefficients[..waves.length].iter_mut().enumerate() {
             let [even, odd, next] = [0, 1, 2].map(|i| signed(2 * j + i));
@@ -179,10 +246,10 @@ pub struct Sum {
     part: Part,
     waves: [Waves; MOST_TERMS],
     count: usize,
-    error: [f64; LENGTH + 1],
-    slope_error: [f64; LENGTH + 1],
+    /// Bounds on the errors of f and f′.
+    errors: [[f64; 2]; LENGTH + 1],
     bend: [f64; LENGTH],
-    /// Coefficients of the bounds, of the first two one more.
+    /// Coefficients of the last bound; the others have one more.
     length: usize,
 }
 
@@ -193,21 +260,21 @@ fn horner(coefficients: &[f64], x: f64) -> f64 {
 
 impl Sum {
     /// Adds what a term adds to the bounds.
-    fn bound(&mut self, z: &Polynomial, t: f64) {
-        let unit = (ROUNDINGS + 2.0 * z.degree() as f64) * f64::EPSILON;
-        for k in 0..=z.degree() {
-            let c = z.coefficient(k);
+    fn bound(&mut self, term: &Term) {
+        let Term { z, degree, t } = term;
+        let unit = (ROUNDINGS + 2.0 * *degree as f64) * f64::EPSILON;
+        for (k, c) in z[..=*degree].iter().enumerate() {
             let (size, error) = (c.value.abs() + c.error, c.error + unit * c.value.abs());
             let n = k as f64;
             // The angle ωt is rounded as well, t itself among it.
             let turned = 2.0 * f64::EPSILON * t * size;
-            self.error[k] += error;
-            self.error[k + 1] += turned;
-            self.slope_error[k] += t * error + n * turned;
-            self.slope_error[k + 1] += t * turned;
+            self.errors[k][0] += error;
+            self.errors[k + 1][0] += turned;
+            self.errors[k][1] += t * error + n * turned;
+            self.errors[k + 1][1] += t * turned;
             self.bend[k] += t * t * size;
             if k > 0 {
-                self.slope_error[k - 1] += n * error;
+                self.errors[k - 1][1] += n * error;
                 self.bend[k - 1] += 2.0 * n * t * size;
             }
             if k > 1 {
@@ -217,9 +284,9 @@ impl Sum {
     }
 }
 
-impl Wave for Sum {
+impl RealFunction for Sum {
     #[inline]
-    fn at(&self, omega: f64) -> [Bounded; 2] {
+    fn at(&self, omega: f64) -> At {
         let x = omega * omega;
         let (mut value, mut slope) = (0.0, 0.0);
         for waves in &self.waves[..self.count] {
@@ -236,20 +303,19 @@ impl Wave for Sum {
                 }
             }
         }
-        [
-            (value, horner(&self.error[..=self.length], omega)),
-            (slope, horner(&self.slope_error[..=self.length], omega)),
-        ]
-    }
-
-    #[inline]
-    fn value(&self, omega: f64) -> Bounded {
-        self.at(omega)[0]
-    }
-
-    /// Without damping a double zero at ω = 0 is lost in rounding up to 1e-14.
-    fn finest(&self) -> f64 {
-        8.0
+        let mut errors = [0.0; 2];
+        for of in self.errors[..=self.length].iter().rev() {
+            for (sum, c) in errors.iter_mut().zip(of) {
+                *sum = *sum * omega + c;
+            }
+        }
+        let [value, slope] =
+            [(value, errors[0]), (slope, errors[1])].map(|(value, error)| Rounded { value, error });
+        At {
+            omega,
+            value,
+            slope,
+        }
     }
 
     #[inline]
@@ -264,11 +330,6 @@ mod tests {
 
     use super::*;
 
-    const ONE: Rounded = Rounded {
-        value: 1.0,
-        error: 0.0,
-    };
-
     /// Values against (1) itself, slopes and bounds on the bend against difference quotients.
     #[test]
     fn sums_are_what_they_say() {
@@ -282,7 +343,7 @@ mod tests {
         for part in [Part::Real, Part::Imaginary] {
             let mut terms = Terms::new(part);
             for (z, t) in &parts {
-                terms = terms.plus(z, ONE, *t);
+                terms.add(z, exactly(1.0), *t);
             }
             let exact = |omega: f64| {
                 let at = Complex64::new(0.0, omega);
@@ -296,7 +357,8 @@ mod tests {
             let sum = terms.sum();
             for i in 0..200 {
                 let omega = 0.03 * f64::from(i);
-                let [(value, error), (slope, _)] = sum.at(omega);
+                let at = sum.at(omega);
+                let (Rounded { value, error }, slope) = (at.value, at.slope.value);
                 assert!((value - exact(omega)).abs() <= error, "{omega}");
                 let h = 1e-5;
                 let numeric = (exact(omega + h) - exact(omega - h)) / (2.0 * h);
