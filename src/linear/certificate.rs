@@ -35,12 +35,10 @@
 //! Strong gains with a short delay make P and κQ large and nearly opposite, and D is their small
 //! sum. So wherever the two cancel they are expressed by B, which has no gains, and by κ − 1. Then
 //! (2) rounds by the small angle of (3).
-//!
-//! Longer than most files: one derivation, in its order.
 
 use std::f64::consts::TAU;
 
-use super::rounded::{ROUNDINGS, Rounded};
+use super::rounded::{ROUNDINGS, Rounded, larger};
 use crate::model::Groups;
 use crate::model::elementary::{atan2, expm1};
 
@@ -293,7 +291,7 @@ impl VerticalLine {
     /// The place ω² = `x`, where Re P = −`y`.
     #[inline(always)]
     fn switch(&self, x: Rounded, y: Rounded) -> Switch {
-        let omega = frequency(x);
+        let omega = x.root();
         let (p, q0, q1) = (self.p, self.q0, self.q1);
         let p_im = p.value * omega.value;
         let q_im = q1 * omega.value;
@@ -344,31 +342,10 @@ impl VerticalLine {
     }
 }
 
-/// `f64::max` without its care for NaN, which costs time.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
 /// The integer nearest to `x` > −1.5.
 #[inline(always)]
 fn nearest(x: f64) -> f64 {
     f64::from((x + 1.5) as i32 - 1)
-}
-
-/// √x, or 0 where x is negative.
-#[inline(always)]
-fn frequency(x: Rounded) -> Rounded {
-    let omega = larger(x.value, 0.0).sqrt();
-    let error = if x.value > x.error {
-        x.error / omega
-    } else {
-        x.error.sqrt()
-    };
-    Rounded {
-        value: omega,
-        error: error + ROUNDINGS * omega,
-    }
 }
 
 /// ω₊² from (1), `root` being the square root of the discriminant; none where it is not positive.

@@ -62,4 +62,25 @@ impl Rounded {
     pub(super) fn decided(self) -> bool {
         self.value.abs() > self.error
     }
+
+    /// The square root, or 0 where the number is negative.
+    #[inline(always)]
+    pub(super) fn root(self) -> Self {
+        let root = larger(self.value, 0.0).sqrt();
+        let error = if self.value > self.error {
+            self.error / root
+        } else {
+            self.error.sqrt()
+        };
+        Self {
+            value: root,
+            error: error + ROUNDINGS * root,
+        }
+    }
+}
+
+/// `f64::max` without its care for NaN, which costs time.
+#[inline(always)]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }

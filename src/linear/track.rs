@@ -8,15 +8,17 @@
 //! all are found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the
 //! values of a cell independent of where a tile begins.
 //!
-//! Longer than most files: one loop over cells, with its steps.
+//! - `step`: one root and its way from a delay to the next
+
+mod step;
 
 use num_complex::Complex64;
 
-use super::characteristic::Jet;
 use super::equation::Equation;
-use super::newton::{Root, divide, halley_step};
+use super::newton::Root;
 use super::spectrum::RootFinder;
 use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
+use step::{NO_TRACK, Track, correct, delay_slope};
 
 /// Most roots that can be reported for a cell, pairs counted once.
 pub const MOST_ROOTS: usize = 8;
@@ -28,19 +30,10 @@ pub const MARGIN: f64 = 1e-12;
 /// Roots followed beyond those reported.
 const COMPANIONS: usize = 2;
 const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
-/// Evaluations of D after which a root is lost.
-const MOST_EVALUATIONS: u32 = 4;
 /// Cells after which a narrower margin than before is tried.
 const CELLS_WITH_A_MARGIN: u8 = 6;
 /// How far the margin may be widened where a root is nearly multiple.
 const WIDEST_MARGIN: f64 = 0.03;
-/// The relative error that a step may leave.
-const SETTLED: f64 = 2e-16;
-/// Steps longer than this part of the distance at which D bends are not trusted.
-const FARTHEST_STEP: f64 = 0.3;
-/// A root with an imaginary part below this (relative) is real, or nearly double.
-const NEARLY_REAL: f64 = 1e-9;
-
 /// The roots found in one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'t> {
@@ -63,22 +56,6 @@ pub struct Work {
     pub evaluations: u64,
 }
 
-/// A root that is being followed.
-#[derive(Debug, Clone, Copy)]
-struct Track {
-    lambda: Complex64,
-    /// dλ/dτ here and one cell earlier.
-    slope: Complex64,
-    earlier_slope: Complex64,
-    error: f64,
-}
-
-const NO_TRACK: Track = Track {
-    lambda: Complex64::ZERO,
-    slope: Complex64::ZERO,
-    earlier_slope: Complex64::ZERO,
-    error: 0.0,
-};
 const NO_ROOT: Root = Root {
     lambda: Complex64::ZERO,
     error: 0.0,
@@ -414,62 +391,5 @@ impl Doubt {
             Self::Missed => DISAGREE,
             Self::Undecided => NOT_CONVERGED,
         }
-    }
-}
-
-/// The root near `predicted` at the delay `tau`; none where Halley's method does not settle at
-/// once.
-#[inline]
-fn correct(equation: impl Equation, tau: f64, predicted: Complex64) -> Option<(Track, u32)> {
-    let mut lambda = predicted;
-    for evaluation in 1..=MOST_EVALUATIONS {
-        let jet = equation.jet(tau, lambda);
-        let per_slope = divide(Complex64::ONE, jet.first);
-        let bend = jet.second * per_slope;
-        let step = halley_step(jet.value * per_slope, bend);
-        let next = lambda - step;
-        // What Halley's method leaves is of third order in the step, over the square of the
-        // distance at which D bends.
-        let size = step.l1_norm();
-        let turn = size * bend.l1_norm().max(tau);
-        if size * turn * turn <= SETTLED * (1.0 + next.l1_norm()) {
-            let nearly_real = next.im != 0.0 && next.im.abs() < NEARLY_REAL * (1.0 + next.re.abs());
-            if !nearly_real {
-                return Some((track_at(equation, tau, next, &jet, per_slope), evaluation));
-            }
-            lambda = Complex64::new(next.re, 0.0);
-        } else if turn < FARTHEST_STEP {
-            lambda = next;
-        } else {
-            return None;
-        }
-    }
-    None
-}
-
-/// dλ/dτ at the root `lambda`.
-fn delay_slope(equation: impl Equation, tau: f64, lambda: Complex64) -> Complex64 {
-    let jet = equation.jet(tau, lambda);
-    let per_slope = -1.0 / jet.first;
-    -jet.feedback * lambda * jet.delayed * per_slope
-}
-
-/// The track at `lambda`, with D evaluated next to it.
-#[inline]
-fn track_at(
-    equation: impl Equation,
-    tau: f64,
-    lambda: Complex64,
-    jet: &Jet,
-    per_slope: Complex64,
-) -> Track {
-    let slope = jet.feedback * jet.delayed * lambda * per_slope;
-    let error = equation.rounding(jet, tau, lambda) * per_slope.l1_norm();
-    let mirrored = |z: Complex64| if lambda.im < 0.0 { z.conj() } else { z };
-    Track {
-        lambda: mirrored(lambda),
-        slope: mirrored(slope),
-        earlier_slope: mirrored(slope),
-        error,
     }
 }

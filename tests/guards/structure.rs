@@ -192,7 +192,7 @@ fn libraries_stay_in_their_rooms() {
         ("rayon", "src/sweep/engine.rs"),
         ("sobol_burley", "src/answers/basin.rs"),
         ("hdf5", "src/store"),
-        ("wide", "src/linear/crossing.rs"),
+        ("wide", "src/linear/crossing"),
         ("faer", "src/linear/collocation.rs"),
         ("libm", "src/model/elementary.rs"),
         ("indicatif", "src/report/progress.rs"),

@@ -3,8 +3,8 @@
 
 use super::condition::{Condition, Followed};
 use super::descend::Frame;
+use super::found::{Kind, Optimum};
 use super::search::{Evaluator, Family, Place, Search, beside_essential};
-use super::{Kind, Optimum};
 use crate::linear::equation::Equation;
 use crate::linear::newton::Root;
 use crate::model::elementary::{hypot, power};

@@ -19,18 +19,20 @@
 //! With growing τ a pair of roots crosses to the right at every τ_k(ω₊) and to the left at every
 //! τ_k(ω₋): the sign of dRe λ/dτ there is that of dF/dx, F(x) being the left side of (1).
 //!
-//! Longer than most files: one derivation, in its order.
+//! - `angle`: angles of points, two at a time
+//! - `quadratic`: the quadratic (1), its discriminant and its roots
+
+mod angle;
+mod quadratic;
 
 use std::f64::consts::TAU;
 
 use wide::f64x2;
 
 use crate::model::Groups;
-
-/// Half an ulp of 1, the relative error of one rounded operation.
-const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-/// How many rounding errors the closed form may gather; a generous count of its operations.
-const ROUNDINGS: f64 = 16.0;
+use angle::phase;
+use quadratic::{ROUNDINGS, UNIT_ROUNDOFF, quadratic, roots, without_underflow};
+pub(crate) use quadratic::{discriminant, frequency_product};
 
 /// Above this branch number neighbouring delays are closer than their rounding errors: all of them
 /// are marginal.
@@ -307,40 +309,6 @@ impl Crossings {
     }
 }
 
-/// `group`, or zero where its square would underflow.
-#[inline]
-fn without_underflow(group: f64) -> f64 {
-    if group.abs() < 1e-150 { 0.0 } else { group }
-}
-
-/// c and d of the quadratic (1) of the module.
-#[inline]
-fn quadratic(groups: Groups) -> (f64, f64) {
-    let Groups { b, a_v, a_n } = groups;
-    (b.mul_add(b, 2.0 * a_n), b * (b - 2.0 * a_v))
-}
-
-/// The discriminant c² − 4d of (1): two crossing frequencies may exist only where it is positive.
-#[inline]
-#[must_use]
-pub(crate) fn discriminant(groups: Groups) -> f64 {
-    let (c, d) = quadratic(groups);
-    c.mul_add(c, -4.0 * d)
-}
-
-/// x₊ x₋ = F(0) = 1 − 2(a_n + b a_v): where it changes sign, ω₋ reaches zero and its delays
-/// infinity.
-#[inline]
-#[must_use]
-pub(crate) fn frequency_product(groups: Groups) -> f64 {
-    let Groups { b, a_v, a_n } = groups;
-    let sum = 1.0 - 2.0 * a_n;
-    // The rounding error of the sum (Knuth's two-sum), which matters where the rest cancels.
-    let part = sum - 1.0;
-    let lost = (1.0 - (sum - part)) + (-2.0 * a_n - part);
-    (-2.0 * b).mul_add(a_v, sum) + lost
-}
-
 /// The number of unstable roots at τ = 0⁺.
 ///
 /// For b ≠ 0 these are the roots of B. For b = 0 the pair ±i moves off the axis with the first
@@ -355,29 +323,6 @@ fn unstable_at_zero_delay(groups: Groups) -> u64 {
         a_v
     };
     if growth > 0.0 { 2 } else { 0 }
-}
-
-/// Both real roots y of (1), the upper one first, without cancellation, and bounds on their errors.
-#[inline]
-fn roots((c, c_error): (f64, f64), d: f64, root: f64, discriminant_error: f64) -> (f64x2, f64x2) {
-    // The root of larger size first, then the other from the product d.
-    let large = -0.5 * (c + root.copysign(c));
-    let per_large = 1.0 / large;
-    let small = d / large;
-    let large_error = 0.25 * discriminant_error / root + 0.5 * c_error;
-    let small_error =
-        small.abs() * (large_error * per_large.abs() + 2.0 * ROUNDINGS * UNIT_ROUNDOFF);
-    if c.is_sign_positive() {
-        (
-            f64x2::from([small, large]),
-            f64x2::from([small_error, large_error]),
-        )
-    } else {
-        (
-            f64x2::from([large, small]),
-            f64x2::from([large_error, small_error]),
-        )
-    }
 }
 
 /// The numbers of two crossings, computed side by side: the arms ω₊ and ω₋ need the same
@@ -440,93 +385,5 @@ impl Arms {
             phase_error: self.phase_error[arm],
             frequency_error: self.frequency_error[arm],
         })
-    }
-}
-
-/// The argument of `cosine` + i `sine` in [0, 2π].
-///
-/// A phase that is negative by less than rounding becomes 2π, which is right: there is no crossing
-/// at τ = 0⁻, but there is one a turn later. Exact zero stays 0.
-#[inline(always)]
-fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
-    let angle = atan2(sine, cosine);
-    angle + (f64x2::splat(TAU) & angle.simd_lt(f64x2::ZERO))
-}
-
-/// The angles of the points (x, y) in [−π, π], to a few units in the last place; 0 at the origin.
-///
-/// After Cephes and Agner Fog's vector class library, as in the crate wide. That one fuses products
-/// and sums where the processor can; here the bits are the same on all processors.
-#[inline(always)]
-fn atan2(y: f64x2, x: f64x2) -> f64x2 {
-    const MORE_BITS: f64 = 6.123_233_995_736_766e-17;
-    let one = f64x2::ONE;
-    let (ahead, aside) = (x.abs(), y.abs());
-    let steep = aside.simd_gt(ahead);
-    let t = steep.select(ahead, aside) / steep.select(aside, ahead);
-    // From 0.66 to 1 the angle is π/4 and that of the rest.
-    let near_diagonal = t.simd_ge(f64x2::splat(0.66));
-    let rest = near_diagonal.select(t - one, t) / near_diagonal.select(one + t, one);
-    let octant = near_diagonal & f64x2::FRAC_PI_4;
-    let correction = near_diagonal & f64x2::splat(0.5 * MORE_BITS);
-    let mut angle = arctangent(rest) + (octant + correction);
-    angle = steep.select(f64x2::FRAC_PI_2 - angle, angle);
-    angle = (x | y).simd_eq(f64x2::ZERO).select(f64x2::ZERO, angle);
-    angle = x.is_sign_negative().select(f64x2::PI - angle, angle);
-    y.is_sign_negative().select(-angle, angle)
-}
-
-/// The arctangent of |z| ≤ 0.66: a rational function of z².
-#[inline(always)]
-fn arctangent(z: f64x2) -> f64x2 {
-    const P: [f64; 5] = [
-        -6.485_021_904_942_025e1,
-        -1.228_866_684_490_136_1e2,
-        -7.500_855_792_314_705e1,
-        -1.615_753_718_733_365e1,
-        -8.750_608_600_031_904e-1,
-    ];
-    const Q: [f64; 5] = [
-        1.945_506_571_482_614e2,
-        4.853_903_996_359_137e2,
-        4.328_810_604_912_903e2,
-        1.650_270_098_316_988_5e2,
-        2.485_846_490_142_306_3e1,
-    ];
-    let x = z * z;
-    let (x2, [p, q]) = (x * x, [P, Q].map(|c| c.map(f64x2::splat)));
-    let x4 = x2 * x2;
-    let above = (p[3] * x + p[2]) * x2 + (p[1] * x + p[0]) + p[4] * x4;
-    let below = x2 * (x * q[3] + q[2]) + (x4 * (q[4] + x) + (x * q[1] + q[0]));
-    (above / below) * (z * x) + z
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_lanes_have_the_angle() {
-        let sizes = [0.0, 1e-300, 1e-9, 0.3, 0.659, 0.661, 1.0, 1.5, 2.5, 1e9];
-        let all: Vec<f64> = sizes.iter().flat_map(|&s| [s, -s]).collect();
-        for &y in &all {
-            for &x in &all {
-                let [first, second] = atan2([y, x].into(), [x, y].into()).to_array();
-                for (found, (y, x)) in [(first, (y, x)), (second, (x, y))] {
-                    if (x, y) != (0.0, 0.0) {
-                        let expected = f64::atan2(y, x);
-                        let apart = (found - expected).abs();
-                        assert!(apart <= 2.0 * f64::EPSILON * expected.abs(), "{y} {x}");
-                    }
-                }
-            }
-        }
-        for i in 0..20_000 {
-            let y = f64::from(i) * 1e-4;
-            let found = atan2(f64x2::splat(y), f64x2::ONE).to_array();
-            let apart = found.map(|angle| (angle - y.atan()).abs());
-            assert!(apart[0] <= 2.0 * f64::EPSILON * y.atan(), "{y}");
-            assert_eq!(found[0], found[1]);
-        }
     }
 }
