@@ -1,11 +1,15 @@
 //! Reads maps.
 //!
-//! Longer than most files: one type with its queries.
+//! - `axes`: the axes and the system
+//! - `cells`: planes, chunks and single cells
+
+mod axes;
+mod cells;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use hdf5::{Dataset, File, Group, SliceOrIndex};
+use hdf5::{Dataset, File, Group};
 
 use super::attributes::{one_number, text};
 use super::contents_hash::contents_hash;
@@ -13,10 +17,7 @@ pub(crate) use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
 use super::seal::{self, Seal};
-use super::values::{Chunks, Number, read, whole};
-use crate::setting::axis::{Axis, MOST_POINTS};
-use crate::setting::field::Storage;
-use crate::setting::map_names::MOST_AXES;
+use super::values::whole;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::SystemModel;
 use crate::setting::units::Units;
@@ -24,31 +25,11 @@ use crate::setting::{Field, Parameter, SweepSpec};
 use crate::sweep::described::schema::{
     self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root,
 };
-use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::plan::MOST_CELLS;
 use crate::text::SpecError;
+use axes::{read_axes, read_system};
 
-/// An axis of a map.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MapAxis {
-    /// The parameter.
-    pub parameter: Quantity,
-    /// Its values.
-    pub values: Vec<f64>,
-    /// Its unit, "1" if dimensionless.
-    pub unit: String,
-}
-
-/// A rectangle of cells of one field, as numbers: NaN where a cell has no value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plane {
-    /// Values of the row axis at the rows that were read.
-    pub rows: Vec<f64>,
-    /// Values of the column axis at the columns that were read.
-    pub columns: Vec<f64>,
-    /// Cells, row by row.
-    pub cells: Vec<f64>,
-}
+pub use axes::MapAxis;
+pub use cells::Plane;
 
 /// An open map.
 ///
@@ -356,141 +337,6 @@ impl MapFile {
             .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
     }
 
-    /// The plane of `field` spanned by the axes `row_axis` and `column_axis`, at `index` along the
-    /// others. It is thinned evenly to at most `most` cells each way. If both axes are the same,
-    /// the plane is the line along that axis, as one row.
-    ///
-    /// # Errors
-    /// When the file is damaged there.
-    pub fn plane(
-        &self,
-        field: Field,
-        index: &[usize],
-        (row_axis, column_axis): (usize, usize),
-        most: usize,
-    ) -> Result<Plane, StoreError> {
-        let slab = self.plane_slab(index, (row_axis, column_axis), most);
-        let thinned = |axis: usize| {
-            let values = &self.axes[axis].values;
-            values
-                .iter()
-                .copied()
-                .step_by(self.step(axis, most))
-                .collect::<Vec<_>>()
-        };
-        let columns = thinned(column_axis);
-        let rows = match row_axis == column_axis {
-            true => self.axes[row_axis].values[..1].to_vec(),
-            false => thinned(row_axis),
-        };
-        let dataset = self.of_field(field)?;
-        let cells = self.read_field(field, &dataset, &slab)?;
-        let cells = if row_axis > column_axis {
-            transposed(&cells, columns.len(), rows.len())
-        } else {
-            cells
-        };
-        Ok(Plane {
-            rows,
-            columns,
-            cells,
-        })
-    }
-
-    /// The statuses of the cells that [`MapFile::plane`] gives.
-    ///
-    /// # Errors
-    /// When the file is damaged there.
-    pub fn status_plane(
-        &self,
-        index: &[usize],
-        (row_axis, column_axis): (usize, usize),
-        most: usize,
-    ) -> Result<Vec<u8>, StoreError> {
-        let slab = self.plane_slab(index, (row_axis, column_axis), most);
-        let cells = self.read::<u8>(&self.dataset(STATUS)?, &slab)?;
-        let count = |axis: usize| self.axes[axis].values.len().div_ceil(self.step(axis, most));
-        Ok(match row_axis > column_axis {
-            true => transposed(&cells, count(column_axis), count(row_axis)),
-            false => cells,
-        })
-    }
-
-    /// The step along an axis with which at most `most` cells are read.
-    fn step(&self, axis: usize, most: usize) -> usize {
-        self.axes[axis].values.len().div_ceil(most).max(1)
-    }
-
-    fn plane_slab(
-        &self,
-        index: &[usize],
-        (row_axis, column_axis): (usize, usize),
-        most: usize,
-    ) -> Vec<SliceOrIndex> {
-        let along = |axis: usize| {
-            if axis != row_axis && axis != column_axis {
-                return SliceOrIndex::Index(index[axis]);
-            }
-            let step = self.step(axis, most);
-            SliceOrIndex::SliceCount {
-                start: 0,
-                step,
-                count: self.axes[axis].values.len().div_ceil(step),
-                block: 1,
-            }
-        };
-        (0..self.axes.len()).map(along).collect()
-    }
-
-    /// The bytes of the chunk of a dataset whose first cell is at `offset`, as stored in the file;
-    /// none where there is no such chunk.
-    pub(crate) fn stored_chunk(
-        &self,
-        name: &str,
-        offset: &[usize],
-    ) -> Result<Option<Vec<u8>>, StoreError> {
-        let dataset = self.dataset(name)?;
-        let read = || -> hdf5::Result<Option<Vec<u8>>> {
-            let chunks = Chunks::of(&dataset)?.ok_or("it is not stored in chunks")?;
-            chunks.stored(offset)
-        };
-        read().map_err(StoreError::hdf5("read", self.path()))
-    }
-
-    /// One cell of a field as a number: NaN where it has no value.
-    pub(crate) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
-        let cells = self.read_field(field, &self.of_field(field)?, &at(index))?;
-        Ok(cells.first().copied().unwrap_or(f64::NAN))
-    }
-
-    /// The status of one cell.
-    pub(crate) fn cell_status(&self, index: &[usize]) -> Result<u8, StoreError> {
-        let cells = self.read::<u8>(&self.dataset(STATUS)?, &at(index))?;
-        Ok(cells.first().copied().unwrap_or(STATUS_FILL))
-    }
-
-    /// Cells of a field as numbers: fill values are NaN.
-    pub(super) fn read_field(
-        &self,
-        field: Field,
-        dataset: &Dataset,
-        slab: &[SliceOrIndex],
-    ) -> Result<Vec<f64>, StoreError> {
-        match field.storage() {
-            Storage::Real => self.read(dataset, slab),
-            Storage::Count => Ok(numbers(self.read::<u16>(dataset, slab)?, N_UNSTABLE_FILL)),
-            Storage::Kind | Storage::Few => Ok(numbers(self.read::<u8>(dataset, slab)?, FEW_FILL)),
-        }
-    }
-
-    pub(super) fn read<T: Number>(
-        &self,
-        dataset: &Dataset,
-        slab: &[SliceOrIndex],
-    ) -> Result<Vec<T>, StoreError> {
-        read(dataset, slab).map_err(StoreError::hdf5("read", &self.path))
-    }
-
     /// The axes of the planes in which the map holds crossing curves; none for a map without
     /// curves.
     #[must_use]
@@ -534,84 +380,6 @@ fn is_of_another_version(file: &File) -> bool {
 fn is_changed(path: &Path) -> bool {
     let never = AtomicBool::new(false);
     matches!(seal::check(path, &never), Ok(Seal::Broken))
-}
-
-fn at(index: &[usize]) -> Vec<SliceOrIndex> {
-    index.iter().map(|&i| SliceOrIndex::Index(i)).collect()
-}
-
-/// Reads the axes, with the same checks as those of a sweep.
-fn read_axes(
-    file: &File,
-    system: Option<&SystemModel>,
-    path: &Path,
-) -> Result<Vec<MapAxis>, StoreError> {
-    let names = text(file, root::AXES)
-        .map_err(|_| StoreError::not_a_map(path, "it does not name its axes"))?;
-    let mut axes: Vec<MapAxis> = Vec::new();
-    for name in names.split_whitespace() {
-        let axis = read_axis(file, system, name).map_err(|why| StoreError::not_a_map(path, why))?;
-        if axes.iter().any(|other| other.parameter == axis.parameter) {
-            let why = format!("it names its axis {name} twice");
-            return Err(StoreError::not_a_map(path, why));
-        }
-        axes.push(axis);
-    }
-    let lengths = axes.iter().map(|axis| axis.values.len() as u64);
-    let cells = lengths.fold(1, u64::saturating_mul);
-    if axes.is_empty() || axes.len() > MOST_AXES || cells > MOST_CELLS {
-        let why = format!("it has {} axes and {cells} cells", axes.len());
-        return Err(StoreError::not_a_map(path, why));
-    }
-    Ok(axes)
-}
-
-/// Reads the system of a file; none for the letter's.
-fn read_system(file: &File, path: &Path) -> Result<Option<SystemModel>, StoreError> {
-    let Ok(text) = text(file, root::SYSTEM) else {
-        return Ok(None);
-    };
-    let read = text.parse().map(Some);
-    read.map_err(|error: SpecError| {
-        StoreError::not_a_map(path, format!("its system is damaged: {error}"))
-    })
-}
-
-fn read_axis(file: &File, system: Option<&SystemModel>, name: &str) -> Result<MapAxis, String> {
-    let unknown = || format!("it has an unknown axis {name}");
-    let parameter = match system {
-        Some(system) => system.quantity(name),
-        None => Parameter::from_name(name).map(Quantity::from),
-    };
-    let parameter = parameter.ok_or_else(unknown)?;
-    let read = || -> hdf5::Result<(Vec<f64>, String)> {
-        let dataset = open::dataset(file, name)?;
-        match dataset.shape()[..] {
-            [length] if length as u64 <= MOST_POINTS => {}
-            _ => return Err("no axis has this shape".into()),
-        }
-        Ok((whole(&dataset)?, text(&dataset, "units")?))
-    };
-    let (values, unit) = read().map_err(|error| format!("its axis {name} is damaged: {error}"))?;
-    let axis = Axis::new(parameter.clone(), values)
-        .map_err(|error| format!("its axis {name} is damaged: {error}"))?;
-    Ok(MapAxis {
-        parameter,
-        values: axis.values,
-        unit,
-    })
-}
-
-/// Whole numbers as reals, NaN for `fill`.
-fn numbers<T: Copy + PartialEq + Into<f64>>(cells: Vec<T>, fill: T) -> Vec<f64> {
-    let number = |n: T| if n == fill { f64::NAN } else { n.into() };
-    cells.into_iter().map(number).collect()
-}
-
-fn transposed<T: Copy>(cells: &[T], rows: usize, columns: usize) -> Vec<T> {
-    (0..columns)
-        .flat_map(|c| (0..rows).map(move |r| cells[r * columns + c]))
-        .collect()
 }
 
 /// The name of a field's dataset in `file`: today's, or else the one in old maps.

@@ -24,6 +24,7 @@
 //! - `netcdf`: dimension scales as netCDF-4 readers expect them
 //! - `open`: the only way to open HDF5 files and their objects; it refuses links to other files,
 //!   filter plugins and foreign storage
+//! - `picked`: the indices that a hyperslab picks along one axis
 //! - `regular`: opens regular files, and no others, for all of slipmap
 //! - `sample`: which cells are checked by a second method: some of every outcome by every method
 //! - `seal`: a checksum of all bytes of a map, appended to the file
@@ -55,6 +56,7 @@ pub mod map_writer;
 mod netcdf;
 mod open;
 pub mod output;
+mod picked;
 pub mod regular;
 pub(crate) mod sample;
 mod seal;

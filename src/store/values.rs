@@ -2,9 +2,6 @@
 //!
 //! [`super::chunk_layout`] inflates the chunks. The library would inflate whatever a chunk holds,
 //! up to a thousand times its bytes, before comparing that with the chunk's own size.
-//!
-//! Longer than most files: everything between the bytes of a chunk and its numbers is checked
-//! together.
 
 use std::ops::Range;
 
@@ -16,6 +13,7 @@ use hdf5_sys::h5p::H5P_DEFAULT;
 
 use super::chunk_layout::ChunkLayout;
 use super::open::{self, DEFLATE, SHUFFLE};
+use super::picked::Picked;
 use crate::setting::axis::MOST_POINTS;
 
 unsafe extern "C" {
@@ -46,55 +44,6 @@ pub(super) fn is_of<T: H5Type>(kind: &hdf5::Result<Datatype>) -> bool {
         return false;
     };
     Datatype::from_type::<T>().is_ok_and(|asked| asked == *kind)
-}
-
-/// The indices to read along one axis.
-#[derive(Debug, Clone, Copy)]
-struct Picked {
-    start: usize,
-    step: usize,
-    count: usize,
-}
-
-impl Picked {
-    fn of(slab: &SliceOrIndex) -> Option<Self> {
-        let (start, step, count) = match *slab {
-            SliceOrIndex::Index(start) => (start, 1, 1),
-            SliceOrIndex::SliceTo {
-                start,
-                step,
-                end,
-                block: 1,
-            } => (start, step, end.saturating_sub(start).div_ceil(step.max(1))),
-            SliceOrIndex::SliceCount {
-                start,
-                step,
-                count,
-                block: 1,
-            } => (start, step, count),
-            _ => return None,
-        };
-        (step > 0).then_some(Self { start, step, count })
-    }
-
-    fn index(&self, number: usize) -> usize {
-        self.start + number * self.step
-    }
-
-    /// The chunks that hold picked indices: the first index of each chunk, and which of the picked
-    /// indices lie in it.
-    fn by_chunk(&self, chunk: usize) -> Vec<(usize, Range<usize>)> {
-        let mut parts = Vec::new();
-        let mut number = 0;
-        while number < self.count {
-            let start = self.index(number) / chunk * chunk;
-            let behind = (start + chunk - self.start).div_ceil(self.step);
-            let end = behind.min(self.count);
-            parts.push((start, number..end));
-            number = end;
-        }
-        parts
-    }
 }
 
 /// A dataset stored in chunks.
@@ -401,33 +350,4 @@ pub(super) fn for_each_part<T: Number>(
         visit(&read::<T>(dataset, &[part])?)?;
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Each picked index lies in its own chunk, once and in order.
-    #[test]
-    fn picked_indices_are_cut_by_chunks() {
-        for start in 0..7 {
-            for step in 1..6 {
-                for count in 0..12 {
-                    for chunk in 1..8 {
-                        let picked = Picked { start, step, count };
-                        let mut next = 0;
-                        for (first, numbers) in picked.by_chunk(chunk) {
-                            assert_eq!((numbers.start, first % chunk), (next, 0));
-                            assert!(!numbers.is_empty());
-                            for number in numbers.clone() {
-                                assert_eq!(picked.index(number) / chunk * chunk, first);
-                            }
-                            next = numbers.end;
-                        }
-                        assert_eq!(next, count, "{picked:?} by {chunk}");
-                    }
-                }
-            }
-        }
-    }
 }
