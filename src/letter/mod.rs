@@ -6,7 +6,8 @@
 //!                  → [claim] claims with verdicts → [page] one page of HTML, or JSON
 //! ```
 //!
-//! - `stability`, `limits`: linear stability, the letter's Fig. 2; where controls end, short delays
+//! - `stability`, `limits`, `shortest`: linear stability, the letter's Fig. 2; where controls end;
+//!   short delays
 //! - `roots`: characteristic roots: their number, bounds and decay
 //! - `motions`: the motions of its Fig. 3, the fate of stick-slip, basins
 //! - `robustness`, `measures`: critical velocities at finite delays; comparison of both controls
@@ -32,6 +33,7 @@ mod page;
 mod robustness;
 mod roots;
 mod short_delay;
+mod shortest;
 mod stability;
 mod workshop;
 
