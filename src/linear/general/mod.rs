@@ -67,7 +67,7 @@ pub(crate) mod zeros;
 pub use latency::Form;
 pub use line::DelayLine;
 pub use plane::{SystemPlane, SystemSetting};
-pub use polynomial::{DegreeTooLarge, MOST_DEGREE, Polynomial};
+pub use polynomial::{MOST_DEGREE, Polynomial};
 pub use precise::source::Source;
 pub(super) use products::product;
 pub use reason::Reason;

@@ -4,10 +4,20 @@ use num_complex::Complex64;
 
 use super::products::{product, sum_of_products};
 use crate::linear::rounded::Rounded;
+use crate::model::ModelError;
 
 /// The largest degree of a polynomial here.
 pub const MOST_DEGREE: usize = 16;
 const LENGTH: usize = MOST_DEGREE + 1;
+
+/// The error of a polynomial with a larger degree than [`MOST_DEGREE`].
+fn too_large(degree: usize) -> ModelError {
+    ModelError {
+        parameter: "degree",
+        value: degree as f64,
+        allowed: "at most 16",
+    }
+}
 
 /// Σ c_k s^k, each c_k known to within e_k.
 ///
@@ -18,14 +28,6 @@ pub struct Polynomial {
     values: [f64; LENGTH],
     errors: [f64; LENGTH],
     degree: usize,
-}
-
-/// A product or a power would have a larger degree than [`MOST_DEGREE`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a polynomial of degree {degree}: at most {MOST_DEGREE} is allowed")]
-pub struct DegreeTooLarge {
-    /// The degree of that product or power.
-    pub degree: usize,
 }
 
 /// A complex value and a bound on its error.
@@ -49,11 +51,9 @@ impl Polynomial {
     ///
     /// # Errors
     /// When there are more of them than [`MOST_DEGREE`] + 1.
-    pub fn new(coefficients: &[f64]) -> Result<Self, DegreeTooLarge> {
+    pub fn new(coefficients: &[f64]) -> Result<Self, ModelError> {
         if coefficients.len() > LENGTH {
-            return Err(DegreeTooLarge {
-                degree: coefficients.len() - 1,
-            });
+            return Err(too_large(coefficients.len() - 1));
         }
         let mut all = Self::ZERO;
         all.values[..coefficients.len()].copy_from_slice(coefficients);
@@ -177,10 +177,10 @@ impl Polynomial {
     ///
     /// # Errors
     /// When its degree would be too large.
-    pub fn times(&self, other: &Self) -> Result<Self, DegreeTooLarge> {
+    pub fn times(&self, other: &Self) -> Result<Self, ModelError> {
         let degree = self.degree + other.degree;
         if degree > MOST_DEGREE {
-            return Err(DegreeTooLarge { degree });
+            return Err(too_large(degree));
         }
         Ok(Self::of(degree, |k| {
             let from = k.saturating_sub(other.degree);
@@ -194,10 +194,10 @@ impl Polynomial {
     ///
     /// # Errors
     /// When its degree would be too large.
-    pub fn power(&self, exponent: u32) -> Result<Self, DegreeTooLarge> {
+    pub fn power(&self, exponent: u32) -> Result<Self, ModelError> {
         let degree = self.degree.saturating_mul(exponent as usize);
         if degree > MOST_DEGREE {
-            return Err(DegreeTooLarge { degree });
+            return Err(too_large(degree));
         }
         let mut product = Self::constant(1.0, 0.0);
         for _ in 0..exponent {
@@ -344,5 +344,20 @@ impl Polynomial {
             slope = slope * size + k as f64 * c.abs();
         }
         slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_larger_degree_is_refused_with_the_largest() {
+        let largest = Polynomial::new(&[1.0; LENGTH]).unwrap();
+        let too_long = Polynomial::new(&[1.0; LENGTH + 1]).unwrap_err();
+        assert_eq!(too_long.value, LENGTH as f64);
+        assert_eq!(too_long.allowed, format!("at most {MOST_DEGREE}"));
+        assert_eq!(largest.power(2).unwrap_err().value, 32.0);
+        assert_eq!(largest.times(&largest).unwrap_err().value, 32.0);
     }
 }

@@ -4,15 +4,15 @@ use num_complex::Complex64;
 
 use super::composition::Composition;
 use super::parts::{Decay, FeedbackForm, late};
-use super::polynomial::{DegreeTooLarge, Polynomial};
+use super::polynomial::Polynomial;
 use super::precise::source::Source;
 use super::reason::Reason;
 use super::shifted::Shifted;
 use super::zeros::{Disc, Zeros};
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
-use crate::model::Channel;
 use crate::model::elementary::{exp, ln, pow};
+use crate::model::{Channel, ModelError};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
 ///
@@ -123,7 +123,7 @@ impl System {
     ///
     /// # Errors
     /// When there are too many.
-    pub fn of_coefficients(p: &[f64], q: &[f64]) -> Result<Self, DegreeTooLarge> {
+    pub fn of_coefficients(p: &[f64], q: &[f64]) -> Result<Self, ModelError> {
         Ok(Self::direct(Polynomial::new(p)?, Polynomial::new(q)?))
     }
 

@@ -96,8 +96,9 @@ impl Stacks {
     fn scale(&mut self, by: Bounded) -> bool {
         let polynomial = self.polynomial();
         let scaled = polynomial.times(&Polynomial::constant(by.value, by.error));
-        self.polynomials.extend(scaled.ok());
-        scaled.is_ok()
+        let is_known = scaled.is_ok();
+        self.polynomials.extend(scaled);
+        is_known
     }
 
     /// Applies an operation; false where its result is not defined.
@@ -139,8 +140,9 @@ impl Stacks {
             }
             Op::PowerOfPolynomial(exponent) => {
                 let power = self.polynomial().power(exponent);
-                self.polynomials.extend(power.ok());
-                return power.is_ok();
+                let is_known = power.is_ok();
+                self.polynomials.extend(power);
+                return is_known;
             }
         }
         self.numbers.last().is_none_or(|number| number.is_known())
