@@ -3,7 +3,7 @@
 use super::parameter::Parameter;
 use super::quantity::Quantity;
 use crate::model::elementary::pow;
-use crate::text::Shown;
+use crate::text::{Shown, SpecError};
 
 /// The most points of one axis.
 pub const MOST_POINTS: u64 = 10_000_000;
@@ -56,18 +56,13 @@ pub fn spans_curves(axis: &Axis) -> bool {
     axis.len() > 1 && !of_start
 }
 
-/// Why values do not make an axis, in words.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct AxisError(pub String);
-
 /// `points` values from `from` to `to`, each computed from its index alone. Both ends are exact.
 ///
 /// # Errors
 /// When the ends are reversed or equal, the number of points is out of range, a logarithmic axis
 /// reaches zero, or neighbouring values coincide in double precision.
-pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f64>, AxisError> {
-    let refuse = |message: String| Err(AxisError(message));
+pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f64>, SpecError> {
+    let refuse = |message: String| Err(SpecError::whole(message));
     if !(2..=MOST_POINTS).contains(&points) {
         return refuse(format!(
             "points = {points} is outside its range: 2 to {MOST_POINTS} (for one value write a \
@@ -131,24 +126,24 @@ impl Axis {
     /// # Errors
     /// When a value is outside the parameter's range, or the values are not strictly monotonic.
     /// Delays must increase.
-    pub fn new(parameter: impl Into<Quantity>, values: Vec<f64>) -> Result<Self, AxisError> {
+    pub fn new(parameter: impl Into<Quantity>, values: Vec<f64>) -> Result<Self, SpecError> {
         let parameter = parameter.into();
         if values.is_empty() {
-            return Err(AxisError("the list is empty".into()));
+            return Err(SpecError::whole("the list is empty"));
         }
         for &value in &values {
-            parameter.check(value).map_err(AxisError)?;
+            parameter.check(value).map_err(SpecError::whole)?;
         }
         let increasing = values.windows(2).all(|w| w[0] < w[1]);
         let decreasing = values.windows(2).all(|w| w[0] > w[1]);
         if parameter == Parameter::Tau && !increasing {
-            return Err(AxisError(
-                "values of tau must be strictly increasing".into(),
+            return Err(SpecError::whole(
+                "values of tau must be strictly increasing",
             ));
         }
         if !(increasing || decreasing) {
-            return Err(AxisError(
-                "the values must be strictly increasing or strictly decreasing".into(),
+            return Err(SpecError::whole(
+                "the values must be strictly increasing or strictly decreasing",
             ));
         }
         Ok(Self { parameter, values })
@@ -211,7 +206,7 @@ mod tests {
             (1.0, 1.0 + 1e-15, 1000, Spacing::Linear, "double precision"),
         ] {
             let error = spaced(from, to, points, spacing).unwrap_err();
-            assert!(error.0.contains(says), "{error}");
+            assert!(error.message.contains(says), "{error}");
         }
     }
 

@@ -30,7 +30,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
         let message = format!("points = {points} is outside its range: 2 to {most}");
         return Err(axis.error(message));
     }
-    spaced(from, to, points, spacing.unwrap_or(Spacing::Linear)).map_err(|e| axis.error(e.0))
+    spaced(from, to, points, spacing.unwrap_or(Spacing::Linear)).map_err(|e| axis.error(e.message))
 }
 
 fn read_spacing(entry: &Entry) -> Result<Spacing, SpecError> {

@@ -175,7 +175,7 @@ fn read_axes(
         } else {
             read_list(&entry, &parameter)?
         };
-        axes.push(Axis::new(parameter, values).map_err(|e| entry.error(e.0))?);
+        axes.push(Axis::new(parameter, values).map_err(|e| entry.error(e.message))?);
     }
     Ok(())
 }
