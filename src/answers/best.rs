@@ -11,7 +11,7 @@ use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::best_plane::{parameter_of, searched_gain};
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::Evaluation;

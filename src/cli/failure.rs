@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use crate::model::ModelError;
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::store::StoreError;
 use crate::text::Shown;
 use crate::text::SpecError;

@@ -8,7 +8,7 @@ use crate::linear::crossing::Crossing;
 use crate::linear::line::Line;
 use crate::linear::stable_delays::StableInterval;
 use crate::model::stop::Stop;
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::setting::{Parameter, Setting};
 
 /// The line reaches at least to the end of this many stable intervals. Near a tangency there can be

@@ -10,7 +10,7 @@ use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::setting::system::SystemModel;
 use crate::setting::{Parameter, Setting};
 use crate::text::finite;

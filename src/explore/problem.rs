@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::chart::ChartError;
 use super::motion::MotionError;
 use crate::model::ModelError;
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::text::SpecError;
 
 /// Why there is no answer; determines the HTTP status and its usual title.

@@ -1,47 +1,13 @@
 //! The feedback, the groups and the linear model of a setting.
 
+use super::no_answer::NoAnswer;
 use super::parameter::Parameter;
-use super::system::{Evaluation, Undefined};
+use super::system::Evaluation;
 use super::values::Setting;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
 use crate::model::{Channel, Feedback, Groups, Lags, ModelError, Oscillator};
-
-/// Why a setting has no linear model, or no answer.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum NoAnswer {
-    /// A parameter is outside the model's range.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// An expression has no value.
-    #[error(transparent)]
-    Undefined(#[from] Undefined),
-    /// The model is of a kind that is not answered at any delay.
-    #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
-    Refused,
-    /// There is no equation.
-    #[error("this system is not answered: P and Q are both 0")]
-    Zero,
-}
-
-impl From<NoAnswer> for ModelError {
-    fn from(why: NoAnswer) -> Self {
-        let of = |parameter, allowed| Self {
-            parameter,
-            value: f64::NAN,
-            allowed,
-        };
-        match why {
-            NoAnswer::Model(error) => error,
-            NoAnswer::Undefined(undefined) => of(
-                undefined.polynomial,
-                "an expression that has a finite value, A of a smaller degree than B",
-            ),
-            NoAnswer::Refused | NoAnswer::Zero => of("system", "one that is answered"),
-        }
-    }
-}
 
 impl Setting {
     /// The feedback, in physical units.

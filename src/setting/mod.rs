@@ -18,6 +18,7 @@
 //! - `linear_model`: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
 //! - `needs`: what fields need of a sweep: a row for each need
+//! - `no_answer`: why a setting has no linear model, or no answer
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
 //! - `point_file`: a point of parameter space as text
@@ -54,6 +55,7 @@ mod limit_spec;
 pub mod linear_model;
 pub mod map_names;
 pub(crate) mod needs;
+pub mod no_answer;
 mod own_system;
 pub mod parameter;
 pub mod point_file;

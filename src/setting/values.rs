@@ -4,11 +4,12 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::law_kind::{LawKind, OF_VELOCITY};
+use super::no_answer::NoAnswer;
 use super::own_system::OwnSystem;
 use super::parameter::{Group, Parameter};
 use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
-use super::system::{Evaluation, SystemModel, Undefined};
+use super::system::{Evaluation, SystemModel};
 use crate::linear::general::System;
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
 
@@ -168,7 +169,7 @@ impl Setting {
     }
 
     /// The system from a file at this setting, evaluated in `at`; none for the letter's system.
-    pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
+    pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<System, NoAnswer>> {
         let system = self.file()?;
         system.put_into(at, self.feedback());
         Some(system.model.at(at))

@@ -43,6 +43,7 @@ use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
 use crate::model::Channel;
+use crate::setting::no_answer::NoAnswer;
 
 /// A system whose parameters have no values yet.
 ///
@@ -161,16 +162,6 @@ impl PartialEq for Evaluation {
     }
 }
 
-/// An expression has no value at a setting.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{polynomial}: {what}")]
-pub struct Undefined {
-    /// The name of the polynomial.
-    pub polynomial: &'static str,
-    /// What is wrong.
-    pub what: String,
-}
-
 impl SystemModel {
     /// Whether the system is given as B and A; memory and latency are then parameters.
     #[must_use]
@@ -211,7 +202,7 @@ impl SystemModel {
     ///
     /// # Errors
     /// Where an expression has no finite value, or the degree of A is not less than that of B.
-    pub fn at(&self, at: &mut Evaluation) -> Result<System, Undefined> {
+    pub fn at(&self, at: &mut Evaluation) -> Result<System, NoAnswer> {
         at.values.clone_from(&at.own);
         at.values.push(at.tau);
         let (values, stacks) = (&at.values, &mut at.stacks);
@@ -225,7 +216,7 @@ impl SystemModel {
                 if !gain.is_zero() && gain.degree() >= open.degree() {
                     let (m, n) = (gain.degree(), open.degree());
                     let what = format!("its degree is {m} here and that of B {n}: not smaller");
-                    return Err(Undefined {
+                    return Err(NoAnswer::Undefined {
                         polynomial: "A",
                         what,
                     });
@@ -242,10 +233,10 @@ impl Expression {
         polynomial: &'static str,
         values: &[f64],
         stacks: &mut Stacks,
-    ) -> Result<crate::linear::general::Polynomial, Undefined> {
+    ) -> Result<crate::linear::general::Polynomial, NoAnswer> {
         self.tape.at(values, stacks).map_err(|place: Range<usize>| {
             let part = self.text.get(place).unwrap_or(&self.text);
-            Undefined {
+            NoAnswer::Undefined {
                 polynomial,
                 what: format!("`{part}` has no finite value at this setting"),
             }

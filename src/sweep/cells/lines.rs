@@ -2,7 +2,7 @@
 
 use crate::linear::line::Linear;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
-use crate::setting::linear_model::NoAnswer;
+use crate::setting::no_answer::NoAnswer;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::Evaluation;

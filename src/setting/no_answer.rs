@@ -1,0 +1,43 @@
+//! Why a setting has no linear model, or no answer.
+
+use crate::model::ModelError;
+
+/// Why a setting has no linear model, or no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoAnswer {
+    /// A parameter is outside the model's range.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// An expression has no value.
+    #[error("{polynomial}: {what}")]
+    Undefined {
+        /// The name of the polynomial.
+        polynomial: &'static str,
+        /// What is wrong.
+        what: String,
+    },
+    /// The model is of a kind that is not answered at any delay.
+    #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
+    Refused,
+    /// There is no equation.
+    #[error("this system is not answered: P and Q are both 0")]
+    Zero,
+}
+
+impl From<NoAnswer> for ModelError {
+    fn from(why: NoAnswer) -> Self {
+        let of = |parameter, allowed| Self {
+            parameter,
+            value: f64::NAN,
+            allowed,
+        };
+        match why {
+            NoAnswer::Model(error) => error,
+            NoAnswer::Undefined { polynomial, .. } => of(
+                polynomial,
+                "an expression that has a finite value, A of a smaller degree than B",
+            ),
+            NoAnswer::Refused | NoAnswer::Zero => of("system", "one that is answered"),
+        }
+    }
+}
