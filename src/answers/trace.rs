@@ -36,6 +36,12 @@ pub enum TraceError {
     /// It would be too long.
     #[error("the trace would have more than {0} samples or events")]
     TooLong(usize),
+    /// It has more events than allowed, its samples being thinned.
+    #[error("the motion has more than {0} events")]
+    TooManyEvents(usize),
+    /// It takes more steps than allowed.
+    #[error("what becomes of the motion is not known after {0} steps")]
+    TooManySteps(u64),
     /// Two delays take more steps than are kept.
     #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
     OutgrowsPast,

@@ -327,8 +327,9 @@ fn failure(error: RunError<StoreError>, path: &Path, fresh: bool, watched: &Watc
         }
         RunError::Sink(error) => error.into(),
         RunError::Model(error) => error.into(),
-        error @ (RunError::Needs(_) | RunError::Threads { .. } | RunError::ThreadLost) => {
-            Failure::failed(error.to_string())
-        }
+        error @ (RunError::Needs(_)
+        | RunError::Memory { .. }
+        | RunError::Threads { .. }
+        | RunError::ThreadLost) => Failure::failed(error.to_string()),
     }
 }

@@ -328,7 +328,10 @@ fn draw(
 
 fn failure(error: &TraceError) -> Failure {
     match error {
-        TraceError::Case(_) | TraceError::TooLong(_) => Failure::bad_input(error.to_string()),
+        TraceError::Case(_)
+        | TraceError::TooLong(_)
+        | TraceError::TooManyEvents(_)
+        | TraceError::TooManySteps(_) => Failure::bad_input(error.to_string()),
         TraceError::Stopped => Failure::failed(error.to_string()),
         TraceError::OutgrowsPast => Failure::bad_input_with_help(
             error.to_string(),

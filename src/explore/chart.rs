@@ -1,17 +1,18 @@
 //! Charts: the cells and curves of a sweep, computed into memory.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::problem::{Problem, Why};
 use crate::linear::curves::CurvePiece;
 use crate::setting::SweepSpec;
 use crate::setting::source::Cost;
 use crate::sweep::Plan;
 use crate::sweep::engine::RunError;
 use crate::sweep::events::Attended;
-use crate::sweep::grid::{Grid, TooLarge};
+use crate::sweep::grid::Grid;
 use crate::sweep::plan::memory::Memory;
-use crate::text::SpecError;
 
 /// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 1 << 20;
@@ -47,36 +48,6 @@ impl Default for Limits {
     }
 }
 
-/// Why there is no chart.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ChartError {
-    /// The sweep is not understood.
-    #[error(transparent)]
-    Spec(#[from] SpecError),
-    /// It has more cells than allowed.
-    #[error("a chart of these fields has at most {most} cells, this one has {cells}")]
-    TooManyCells {
-        /// How many it has.
-        cells: u64,
-        /// How many are allowed.
-        most: u64,
-    },
-    /// It has curves in more planes than allowed.
-    #[error("a chart has curves in at most {most} planes, this one in {planes}")]
-    TooManyPlanes {
-        /// In how many planes.
-        planes: u64,
-        /// In how many planes they are allowed.
-        most: u64,
-    },
-    /// It was stopped before it was complete.
-    #[error("stopped")]
-    Stopped,
-    /// It cannot be computed.
-    #[error("{0}")]
-    Failed(String),
-}
-
 /// A curve of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChartCurve {
@@ -104,6 +75,11 @@ impl ChartCurve {
     }
 }
 
+/// The problem of a chart beyond its limits.
+fn too_large(detail: String) -> Problem {
+    Problem::new(Why::TooLarge, detail).help("run it: slipmap run SWEEP.toml has no such limit")
+}
+
 /// A sweep in memory.
 #[derive(Debug, Clone)]
 pub struct Chart {
@@ -118,15 +94,19 @@ impl Chart {
     ///
     /// # Errors
     /// When the text is not understood, or has too many cells or planes.
-    pub fn plan(text: &str, limits: Limits) -> Result<Arc<Plan>, ChartError> {
+    pub fn plan(text: &str, limits: Limits) -> Result<Arc<Plan>, Problem> {
         let plan = Plan::new(SweepSpec::read(text, limits.points)?)?;
         let (cells, most) = (plan.cells(), limits.most(&plan));
         if cells > most {
-            return Err(ChartError::TooManyCells { cells, most });
+            return Err(too_large(format!(
+                "a chart of these fields has at most {most} cells, this one has {cells}"
+            )));
         }
         let (planes, most) = (plan.boundary_planes(), limits.planes);
         if planes > most {
-            return Err(ChartError::TooManyPlanes { planes, most });
+            return Err(too_large(format!(
+                "a chart has curves in at most {most} planes, this one in {planes}"
+            )));
         }
         Ok(Arc::new(plan))
     }
@@ -135,15 +115,8 @@ impl Chart {
     ///
     /// # Errors
     /// When it cannot be computed, or is stopped.
-    pub fn of(plan: &Arc<Plan>, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
-        let grid =
-            Grid::compute(plan, 1, Attended::silently(stop)).map_err(|error| match error {
-                RunError::Interrupted => ChartError::Stopped,
-                RunError::Sink(TooLarge { .. }) => {
-                    ChartError::Failed("there is no memory for its cells".into())
-                }
-                other => ChartError::Failed(other.to_string()),
-            })?;
+    pub fn of(plan: &Arc<Plan>, stop: &Arc<AtomicBool>) -> Result<Self, RunError<Infallible>> {
+        let grid = Grid::compute(plan, 1, Attended::silently(stop))?;
         let curves = curves(&grid);
         Ok(Self { grid, curves })
     }
@@ -205,9 +178,9 @@ mod tests {
     const PLANE: &str = "[axes]\nmu_prime = { from = -0.9, to = 0.1, points = 40 }\n\
         tau = { from = 0.0, to = 9.0, points = 50 }\n[fixed]\nalpha_v = -0.33\n";
 
-    fn chart(text: &str) -> Result<Chart, ChartError> {
+    fn chart(text: &str) -> Result<Chart, Problem> {
         let stop = Arc::new(AtomicBool::new(false));
-        Chart::of(&Chart::plan(text, Limits::default())?, &stop)
+        Ok(Chart::of(&Chart::plan(text, Limits::default())?, &stop)?)
     }
 
     #[test]
@@ -240,6 +213,12 @@ mod tests {
         assert!(!slow(&gains) && slow(&format!("boundaries = true\n{gains}")));
     }
 
+    fn too_many(cells: u64, most: u64) -> Problem {
+        too_large(format!(
+            "a chart of these fields has at most {most} cells, this one has {cells}"
+        ))
+    }
+
     #[test]
     fn too_much_is_refused_before_anything_is_computed() {
         for (fields, points, most) in [
@@ -256,39 +235,29 @@ mod tests {
             let longer = longer.replace("points = 40", "points = 100");
             let refused = chart(&format!("{fields}{longer}")).unwrap_err();
             let cells = 100 * points;
-            assert_eq!(refused, ChartError::TooManyCells { cells, most });
+            assert_eq!(refused, too_many(cells, most));
         }
         let planes = "boundaries = true\n[axes]\nmass = { from = 1, to = 2, points = 17 }\n";
         let many = PLANE.replace("[axes]\n", planes);
-        let (planes, most) = (17, 16);
-        assert_eq!(
-            chart(&many).unwrap_err(),
-            ChartError::TooManyPlanes { planes, most }
-        );
+        let planes = "a chart has curves in at most 16 planes, this one in 17";
+        assert_eq!(chart(&many).unwrap_err(), too_large(planes.into()));
         let long = PLANE.replace("points = 50", "points = 65537");
-        assert!(matches!(chart(&long).unwrap_err(), ChartError::Spec(_)));
+        assert_eq!(chart(&long).unwrap_err().status, 422);
         let axis = "[axes]\ntau = { from = 0.1, to = 9, points = 1001 }\n[fixed]\nv0 = 0.2\n\
             [friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
         let followed = chart(&format!("fields = [\"outcome\"]\n{axis}")).unwrap_err();
-        assert_eq!(
-            followed,
-            ChartError::TooManyCells {
-                cells: 1001,
-                most: 1000
-            }
-        );
+        assert_eq!(followed, too_many(1001, 1000));
+        assert_eq!(followed.status, 413);
     }
 
     #[test]
     fn mistakes_say_where_and_a_stop_ends_it() {
-        let ChartError::Spec(error) = chart("[axes]\ntau = [1, 0]\n").unwrap_err() else {
-            panic!("another error")
-        };
-        assert!(error.span.is_some());
+        let refused = chart("[axes]\ntau = [1, 0]\n").unwrap_err();
+        assert!(refused.span.is_some());
         let stop = Arc::new(AtomicBool::new(false));
         stop.store(true, Ordering::Relaxed);
         let plan = Chart::plan(PLANE, Limits::default()).unwrap();
         let stopped = Chart::of(&plan, &stop);
-        assert_eq!(stopped.unwrap_err(), ChartError::Stopped);
+        assert!(matches!(stopped, Err(RunError::Interrupted)));
     }
 }

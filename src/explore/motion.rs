@@ -36,23 +36,6 @@ impl Limits {
     }
 }
 
-/// Why there is no motion.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MotionError {
-    /// It has more events than allowed.
-    #[error("the motion has more than {0} events")]
-    TooLong(usize),
-    /// It takes more steps than allowed.
-    #[error("what becomes of the motion is not known after {0} steps")]
-    TooManySteps(u64),
-    /// It was stopped before it was complete.
-    #[error("stopped")]
-    Stopped,
-    /// It cannot be followed.
-    #[error("{0}")]
-    Failed(String),
-}
-
 /// A motion that was followed.
 #[derive(Debug, Clone)]
 pub struct Followed {
@@ -67,18 +50,17 @@ impl Followed {
     ///
     /// # Errors
     /// When it exceeds the limits, or is stopped.
-    pub fn of(case: &CaseSpec, limits: Limits, stop: &Stop) -> Result<Self, MotionError> {
+    pub fn of(case: &CaseSpec, limits: Limits, stop: &Stop) -> Result<Self, TraceError> {
         let mut spec = case.clone();
         let asked = spec.case.steps;
         spec.case.steps = asked.min(limits.steps);
         let trace = Trace::within(&spec, Most::Thinned(limits.samples), stop);
         let trace = trace.map_err(|error| match error {
-            TraceError::TooLong(most) => MotionError::TooLong(most),
-            TraceError::Stopped => MotionError::Stopped,
-            other => MotionError::Failed(other.to_string()),
+            TraceError::TooLong(most) => TraceError::TooManyEvents(most),
+            other => other,
         })?;
         if trace.summary.steps >= limits.steps && asked > limits.steps {
-            return Err(MotionError::TooManySteps(limits.steps));
+            return Err(TraceError::TooManySteps(limits.steps));
         }
         Ok(Self { spec, trace })
     }
@@ -165,7 +147,7 @@ mod tests {
 
     const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
 
-    fn followed(text: &str, limits: Limits) -> Result<Followed, MotionError> {
+    fn followed(text: &str, limits: Limits) -> Result<Followed, TraceError> {
         Followed::of(&text.parse().unwrap(), limits, &Stop::default())
     }
 
@@ -183,7 +165,7 @@ mod tests {
             ..limits
         };
         let refused = followed(FIG3A, few).unwrap_err();
-        assert_eq!(refused, MotionError::TooLong(10));
+        assert_eq!(refused, TraceError::TooManyEvents(10));
     }
 
     /// A case that asks for few steps gets them; one that needs more than the limit is refused.
@@ -194,7 +176,7 @@ mod tests {
             ..Limits::default()
         };
         let refused = followed(FIG3A, limits).unwrap_err();
-        assert_eq!(refused, MotionError::TooManySteps(200));
+        assert_eq!(refused, TraceError::TooManySteps(200));
         let few = followed(&format!("steps = 100\n{FIG3A}"), limits).unwrap();
         assert_eq!(MotionSummary::of(&few.trace).outcome, "undecided");
     }

@@ -1,11 +1,13 @@
 //! The reply to a request that cannot be answered: problem details (RFC 9457).
 
+use std::convert::Infallible;
+
 use serde::Serialize;
 
-use super::chart::ChartError;
-use super::motion::MotionError;
+use crate::answers::trace::TraceError;
 use crate::model::ModelError;
 use crate::setting::no_answer::NoAnswer;
+use crate::sweep::engine::RunError;
 use crate::text::SpecError;
 
 /// Why there is no answer; determines the HTTP status and its usual title.
@@ -103,29 +105,30 @@ impl From<NoAnswer> for Problem {
     }
 }
 
-impl From<ChartError> for Problem {
-    fn from(error: ChartError) -> Self {
+impl From<RunError<Infallible>> for Problem {
+    fn from(error: RunError<Infallible>) -> Self {
         match error {
-            ChartError::Spec(error) => error.into(),
-            ChartError::TooManyCells { .. } | ChartError::TooManyPlanes { .. } => {
-                Self::new(Why::TooLarge, error.to_string())
-                    .help("run it: slipmap run SWEEP.toml has no such limit")
+            RunError::Interrupted => Self::stopped(),
+            RunError::Memory { .. } => {
+                Self::new(Why::Unprocessable, "there is no memory for its cells")
             }
-            ChartError::Stopped => Self::stopped(),
-            ChartError::Failed(why) => Self::new(Why::Unprocessable, why),
+            other => Self::new(Why::Unprocessable, other.to_string()),
         }
     }
 }
 
-impl From<MotionError> for Problem {
-    fn from(error: MotionError) -> Self {
+impl From<TraceError> for Problem {
+    fn from(error: TraceError) -> Self {
+        let text = error.to_string();
         match error {
-            MotionError::Stopped => Self::stopped(),
-            MotionError::TooLong(_) | MotionError::TooManySteps(_) => {
-                Self::new(Why::TooLarge, error.to_string())
+            TraceError::Stopped => Self::stopped(),
+            TraceError::TooManyEvents(_) | TraceError::TooManySteps(_) => {
+                Self::new(Why::TooLarge, text)
                     .help("run it: slipmap simulate CASE.toml has no such limit")
             }
-            MotionError::Failed(why) => Self::new(Why::Unprocessable, why),
+            TraceError::Case(_) | TraceError::TooLong(_) | TraceError::OutgrowsPast => {
+                Self::new(Why::Unprocessable, text)
+            }
         }
     }
 }

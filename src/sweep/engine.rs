@@ -45,6 +45,14 @@ pub enum RunError<E> {
     /// A field lacks what it needs of its setting.
     #[error(transparent)]
     Needs(#[from] SpecError),
+    /// The cells of the sweep do not fit into memory.
+    #[error("{cells} cells of {bytes} bytes each do not fit into memory")]
+    Memory {
+        /// How many cells there are.
+        cells: u64,
+        /// How many bytes each of them takes.
+        bytes: u64,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

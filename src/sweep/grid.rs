@@ -1,5 +1,6 @@
 //! A sweep computed into memory, for programs that want numbers and no file.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use super::cells::boundaries::BoundaryPlane;
@@ -47,16 +48,6 @@ pub struct Grid {
     pub best: Vec<Option<BestSettings>>,
 }
 
-/// The cells of a sweep do not fit into memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{cells} cells of {bytes} bytes each do not fit into memory")]
-pub struct TooLarge {
-    /// How many cells there are.
-    pub cells: u64,
-    /// How many bytes each of them takes.
-    pub bytes: u64,
-}
-
 impl Grid {
     /// Computes all of `plan` on `threads` threads, or on this one where `threads` is at most 1.
     /// All cells are in memory at once. Asked to stop, several threads end as [`engine::run`] does,
@@ -69,7 +60,7 @@ impl Grid {
         plan: &Arc<Plan>,
         threads: usize,
         attended: Attended,
-    ) -> Result<Self, RunError<TooLarge>> {
+    ) -> Result<Self, RunError<Infallible>> {
         let mut grid = Self::empty(plan)?;
         let (todo, mut taken) = (Todo::all(plan.pieces()), Taken(&mut grid));
         match threads {
@@ -79,8 +70,8 @@ impl Grid {
         Ok(grid)
     }
 
-    fn empty(plan: &Arc<Plan>) -> Result<Self, RunError<TooLarge>> {
-        let cells = room_for(plan).map_err(RunError::Sink)?;
+    fn empty(plan: &Arc<Plan>) -> Result<Self, RunError<Infallible>> {
+        let cells = room_for(plan)?;
         Ok(Self {
             cells: TileBuffers::of_cells(&plan.spec.fields, cells),
             curves: vec![BoundaryPlane::default(); plan.boundary_planes() as usize],
@@ -115,14 +106,14 @@ impl Grid {
 }
 
 /// The number of cells of a sweep, if the system can provide memory for them.
-fn room_for(plan: &Plan) -> Result<usize, TooLarge> {
+fn room_for(plan: &Plan) -> Result<usize, RunError<Infallible>> {
     let fields = plan.spec.fields.iter().map(|field| field.bytes());
     let status = size_of::<u8>();
     let bytes = fields.sum::<usize>() + status;
     let cells = usize::try_from(plan.cells()).ok();
     let all = cells.and_then(|cells| cells.checked_mul(bytes));
     let fits = all.is_some_and(|all| Vec::<u8>::new().try_reserve_exact(all).is_ok());
-    cells.filter(|_| fits).ok_or(TooLarge {
+    cells.filter(|_| fits).ok_or(RunError::Memory {
         cells: plan.cells(),
         bytes: bytes as u64,
     })
@@ -155,13 +146,13 @@ struct Taken<'g>(&'g mut Grid);
 
 impl Sink for Taken<'_> {
     type Encoder = Copies;
-    type Error = TooLarge;
+    type Error = Infallible;
 
     fn encoder(&self) -> Copies {
         Copies
     }
 
-    fn write(&mut self, piece: Piece, piece_taken: Owned) -> Result<(), TooLarge> {
+    fn write(&mut self, piece: Piece, piece_taken: Owned) -> Result<(), Infallible> {
         match (piece, piece_taken) {
             (Piece::Curves(number), Owned::Curves(plane)) => {
                 self.0.curves[number as usize] = plane;
