@@ -1,8 +1,9 @@
 //! `slipmap basin`: the share of starts from which control ends in sliding.
 
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
-use crate::explore::basin::{BasinError, BasinShare, Followed};
+use crate::explore::basin::{BasinShare, Followed, no_law};
 use crate::report::numbers::{grouped, unit_behind};
 use crate::report::table::write_starts;
 use crate::setting::basin::{Basin, Over};
@@ -10,7 +11,7 @@ use crate::setting::point_file::PointOf;
 use crate::setting::simulation::Simulation;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
-use crate::slip::case::CaseError;
+use crate::sweep::RunError;
 use crate::text::{Shown, finite};
 use clap::ValueEnum;
 
@@ -164,7 +165,7 @@ impl Args {
             (setting, self.parameters.units())
         };
         if setting.law().is_none() {
-            return Err(self.refused(&BasinError::NoLaw));
+            return Err(Failure::bad_input(no_law().message));
         }
         self.put_starts(&mut basin, &setting)?;
         if let Some(horizon) = self.horizon {
@@ -227,11 +228,11 @@ impl Args {
         }
     }
 
-    fn refused(&self, error: &BasinError) -> Failure {
+    fn refused(&self, error: &RunError<Infallible>) -> Failure {
         match error {
-            BasinError::Case(CaseError::Model(error)) => self.parameters.refused(error),
-            BasinError::Threads(error) => Failure::failed(error.to_string()),
-            error => Failure::bad_input(error.to_string()),
+            RunError::Model(error) => self.parameters.refused(error),
+            RunError::Needs(error) => Failure::bad_input(error.to_string()),
+            error => Failure::failed(error.to_string()),
         }
     }
 }

@@ -8,22 +8,13 @@ use crate::answers::basin::{BasinProblem, Place, Region, STUDENT_95, Tally};
 use crate::setting::Setting;
 use crate::setting::basin::{Basin, SCRAMBLINGS};
 use crate::setting::simulation::Simulation;
-use crate::slip::case::CaseError;
 use crate::slip::outcome::Outcome;
 use crate::sweep::engine::{RunError, each};
+use crate::text::SpecError;
 
-/// Why there is no share.
-#[derive(Debug, thiserror::Error)]
-pub enum BasinError {
-    /// The setting has no friction law.
-    #[error("a share of starts needs a friction law: motions stick and slip by it")]
-    NoLaw,
-    /// A value is out of range, or the delay is too long.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// The threads could not be started.
-    #[error(transparent)]
-    Threads(#[from] RunError<Infallible>),
+/// The error of a setting without a friction law.
+pub(crate) fn no_law() -> SpecError {
+    SpecError::whole("a share of starts needs a friction law: motions stick and slip by it")
 }
 
 /// The outcomes of all starts.
@@ -39,14 +30,15 @@ impl Followed {
     /// number.
     ///
     /// # Errors
-    /// See [`BasinError`].
+    /// When the setting has no friction law, a value is out of range, the delay is too long, or the
+    /// threads cannot be started.
     pub fn of(
         setting: &Setting,
         simulation: &Simulation,
         basin: &Basin,
         threads: usize,
-    ) -> Result<Self, BasinError> {
-        let asked = BasinProblem::of(setting, simulation, basin)?.ok_or(BasinError::NoLaw)?;
+    ) -> Result<Self, RunError<Infallible>> {
+        let asked = BasinProblem::of(setting, simulation, basin)?.ok_or_else(no_law)?;
         let begin = || (asked.follower(), None);
         let places: Vec<Place> = asked.places().collect();
         let outcomes = each(places, threads, begin, |(follower, motion), place| {

@@ -20,6 +20,7 @@ use super::plan::pieces::{Piece, Todo};
 pub use super::sink::{Computed, Encode, Sink};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::slip::case::CaseError;
 use crate::sweep::cells::best_planes::{best_of_plane, best_plane};
 use crate::text::SpecError;
 
@@ -42,7 +43,7 @@ pub enum RunError<E> {
     /// A parameter is outside the model's range.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A field lacks what it needs of its setting.
+    /// A field, or a motion, lacks what it needs of its setting.
     #[error(transparent)]
     Needs(#[from] SpecError),
     /// The cells of the sweep do not fit into memory.
@@ -64,6 +65,15 @@ pub enum RunError<E> {
     /// A thread ended before its work was done, which is a fault of the program.
     #[error("a computing thread ended early; this is a fault of slipmap")]
     ThreadLost,
+}
+
+impl<E> From<CaseError> for RunError<E> {
+    fn from(error: CaseError) -> Self {
+        match error {
+            CaseError::Model(error) => Self::Model(error),
+            CaseError::NoCycle(_) => Self::Needs(SpecError::whole(error.to_string())),
+        }
+    }
 }
 
 /// Computes the pieces of `plan` that `todo` lists on `threads` threads and gives them to `sink`.
