@@ -1,5 +1,7 @@
 //! The planes in which crossing curves are traced, or why there are none.
 
+use std::fmt;
+
 use crate::setting::axis::plane_of_curves;
 use crate::setting::parameter::Parameter;
 use crate::setting::spec::SweepSpec;
@@ -10,34 +12,39 @@ const PLANES_TRACED_UNASKED: u64 = 1000;
 const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// Why no crossing curves are traced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoBoundaries {
     /// Nothing is about sliding at a velocity.
-    #[error("the sweep is not about sliding at a velocity")]
     NoSliding,
     /// There is no plane.
-    #[error("fewer than two of its axes matter for linear stability")]
     NoPlane,
     /// The sweep says so.
-    #[error("the sweep has boundaries = false")]
     Unwanted,
     /// They are not asked for in planes without the delay.
-    #[error(
-        "between two axes without the delay they are traced only where the sweep has \
-         boundaries = true; a picture traces those that it shows"
-    )]
     NoDelay,
     /// They are not asked for in so many planes.
-    #[error(
-        "in {planes} planes, more than {most}, they are traced only where the sweep has \
-         boundaries = true; a picture traces those that it shows"
-    )]
     TooMany {
         /// The planes.
         planes: u64,
         /// The most planes that are traced without being asked for.
         most: u64,
     },
+}
+
+impl fmt::Display for NoBoundaries {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const ONLY_ASKED: &str = "they are traced only where the sweep has boundaries = true; a \
+            picture traces those that it shows";
+        match self {
+            Self::NoSliding => f.write_str("the sweep is not about sliding at a velocity"),
+            Self::NoPlane => f.write_str("fewer than two of its axes matter for linear stability"),
+            Self::Unwanted => f.write_str("the sweep has boundaries = false"),
+            Self::NoDelay => write!(f, "between two axes without the delay {ONLY_ASKED}"),
+            Self::TooMany { planes, most } => {
+                write!(f, "in {planes} planes, more than {most}, {ONLY_ASKED}")
+            }
+        }
+    }
 }
 
 impl NoBoundaries {
