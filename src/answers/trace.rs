@@ -156,7 +156,7 @@ impl Trace {
             _ => summary.decided,
         };
         let sampling = sampling(spec.sampling, until, most);
-        let mut recorder = Recorder::new(case, (sampling, most), stop)?;
+        let mut recorder = Recorder::new(case, sampling, most, stop)?;
         recorder.record(until)?;
         // The same motion was followed twice and agrees up to rounding: a step that is cut at the
         // end of the trace ends elsewhere. The events of the sampled motion come first.
@@ -254,11 +254,7 @@ struct Begun {
 }
 
 impl Recorder {
-    fn new(
-        case: &Case,
-        (sampling, most): (Sampling, Most),
-        stop: &Stop,
-    ) -> Result<Self, CaseError> {
+    fn new(case: &Case, sampling: Sampling, most: Most, stop: &Stop) -> Result<Self, CaseError> {
         Ok(Self {
             motion: case.motion()?.heeding(stop.clone()),
             x: 0.0,

@@ -218,8 +218,8 @@ fn print_recommended(
     };
     writeln!(out, "at the {which} setting")?;
     let Asked { setting, units, .. } = &told.asked;
-    let found = (&point.margins, margins::violations(&point.stability));
-    margins::print(out, found, setting, units)?;
+    let violations = margins::violations(&point.stability);
+    margins::print(out, &point.margins, violations, setting, units)?;
     match &told.vc {
         Some(found) => vc::print_short(out, found, units),
         None => Ok(()),

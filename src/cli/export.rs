@@ -94,7 +94,7 @@ fn of_map(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
     if table == TableName::Cells {
         let fields = fields(&map, args)?;
         return to.write(signals, NOT_EXPORTED, |out, stop| {
-            write_cells(&map, (&fields, &held), args.comments, out, stop)
+            write_cells(&map, &fields, &held, args.comments, out, stop)
         });
     }
     refuse_fields(args, table)?;
@@ -137,11 +137,11 @@ fn of_trace(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
     }
     let quantities = quantities(args)?;
     let file = TraceFile::open(&args.file)?;
-    let motion = (&file.spec, &file.trace);
+    let (spec, trace) = (&file.spec, &file.trace);
     let write = |out: &mut dyn Write, stop: &AtomicBool| -> Result<u64, TableError> {
         match table {
-            TableName::Events => write_events(motion, args.comments, out),
-            _ => write_samples(motion, &quantities, args.comments, out, stop),
+            TableName::Events => write_events(spec, trace, args.comments, out),
+            _ => write_samples(spec, trace, &quantities, args.comments, out, stop),
         }
     };
     to.write(signals, NOT_EXPORTED, write)

@@ -71,7 +71,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let mut out = ForPeople::begin();
     Ok(print(
         &mut out,
-        (&margins, violations),
+        &margins,
+        violations,
         setting,
         &asked.units,
     )?)
@@ -105,7 +106,8 @@ fn without_margins(margins: &Margins, violations: Option<u64>, rate: &str) -> St
 /// The margins in lines of words and numbers; without margins the number of roots that forbid them.
 pub(super) fn print(
     out: &mut impl Write,
-    (margins, violations): (&Margins, Option<u64>),
+    margins: &Margins,
+    violations: Option<u64>,
     setting: &Setting,
     units: &Units,
 ) -> std::io::Result<()> {

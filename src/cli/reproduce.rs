@@ -76,8 +76,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         stop: &signals.stop,
     };
     let threads = args.threads.unwrap_or_else(default_threads);
-    let place = (folder.path(), args.keep.is_some());
-    let workshop = Workshop::new(place, args.quick, threads, &made, attended, &told);
+    let (path, kept) = (folder.path(), args.keep.is_some());
+    let workshop = Workshop::new(path, kept, args.quick, threads, &made, attended, &told);
     let found = reproduce(workshop).map_err(|error| {
         bars.0.borrow().clear();
         failure(error, args, &signals)

@@ -103,7 +103,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &args.provenance())?;
     args.tell(&spec, &trace, &path)?;
-    args.draw_and_tell((&spec, &trace), &path, &signals)
+    args.draw_and_tell(&spec, &trace, &path, &signals)
 }
 
 /// Writes only the samples, as text.
@@ -123,16 +123,16 @@ fn simulate_to_text(
     let trace = args.follow(spec, signals)?;
     let quantities: Vec<_> = QUANTITIES.iter().collect();
     to.write(signals, "there is no trace", |out, stop| {
-        write_samples((spec, &trace), &quantities, false, out, stop)
+        write_samples(spec, &trace, &quantities, false, out, stop)
     })?;
     match to {
         To::File(path) => {
             args.tell(spec, &trace, path)?;
-            args.draw_and_tell((spec, &trace), path, signals)
+            args.draw_and_tell(spec, &trace, path, signals)
         }
         To::StandardOutput if args.picture.is_some() => {
             let nameless = Path::new(STANDARD_OUTPUT);
-            draw(args, (spec, &trace), nameless, signals).map(drop)
+            draw(args, spec, &trace, nameless, signals).map(drop)
         }
         To::StandardOutput => Ok(()),
     }
@@ -225,11 +225,12 @@ impl Args {
 
     fn draw_and_tell(
         &self,
-        motion: (&CaseSpec, &Trace),
+        spec: &CaseSpec,
+        trace: &Trace,
         path: &Path,
         signals: &Signals,
     ) -> Result<(), Failure> {
-        let drawn = draw(self, motion, path, signals)?;
+        let drawn = draw(self, spec, trace, path, signals)?;
         match drawn.filter(|_| !self.json) {
             Some(picture) => say::result(picture.display()),
             None => Ok(()),
@@ -293,7 +294,8 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
 /// a warning.
 fn draw(
     args: &Args,
-    (spec, trace): (&CaseSpec, &Trace),
+    spec: &CaseSpec,
+    trace: &Trace,
     path: &Path,
     signals: &Signals,
 ) -> Result<Option<PathBuf>, Failure> {
@@ -301,7 +303,7 @@ fn draw(
         let complete = format!("{} is complete, its picture is not drawn", path.display());
         let options = PictureOptions::default();
         signals.or_end(complete, || {
-            picture::draw_trace((spec, trace), path, picture, &options)
+            picture::draw_trace(spec, trace, path, picture, &options)
         })
     };
     if let Some(asked) = &args.picture {

@@ -84,7 +84,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             print(
                 args.json.then_some(&inputs),
                 &found,
-                (|_: &str, _: &Value| None, &[]),
+                |_: &str, _: &Value| None,
+                &[],
                 &Units::default(),
             )
         }
@@ -195,7 +196,7 @@ fn print_found(
         Some(_) => &["v_liftoff", "windows"],
         None => &[],
     };
-    print(json, found, (told, hidden), units)
+    print(json, found, told, hidden, units)
 }
 
 /// A velocity with as many digits as are known; a bound upwards or downwards.
@@ -218,7 +219,8 @@ fn windows(of: Vec<[f64; 2]>) -> String {
 fn print(
     json: Option<&Inputs>,
     found: &impl Serialize,
-    (told, hidden): (impl Fn(&str, &Value) -> Option<String>, &[&str]),
+    told: impl Fn(&str, &Value) -> Option<String>,
+    hidden: &[&str],
     units: &Units,
 ) -> Result<(), Failure> {
     if let Some(inputs) = json {

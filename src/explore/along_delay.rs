@@ -49,7 +49,7 @@ impl AlongDelay {
     /// The line; without steps where roots are not counted.
     fn of_line(line: &dyn Line, tau: f64) -> Self {
         let first: Vec<StableInterval> = line.stable_intervals().take(INTERVALS).collect();
-        let until = longest(line.crossings(), &first, (tau, line.time_unit()));
+        let until = longest(line.crossings(), &first, tau, line.time_unit());
         let changes = || {
             line.changes()
                 .map(|change| change.tau)
@@ -59,7 +59,7 @@ impl AlongDelay {
         let n_unstable = |tau: f64| line.count(tau, MarginalTolerance::default());
         let steps = match line.n_at_zero_delay() {
             None => Vec::new(),
-            Some(_) => steps((count, changes()), until, |tau| {
+            Some(_) => steps(count, changes(), until, |tau| {
                 n_unstable(tau).map_or(0, |count| count.n_unstable)
             }),
         };
@@ -88,7 +88,8 @@ impl AlongDelay {
 fn longest<'c>(
     crossings: impl Iterator<Item = &'c Crossing>,
     stable: &[StableInterval],
-    (tau, time_unit): (f64, f64),
+    tau: f64,
+    time_unit: f64,
 ) -> f64 {
     let first = crossings.map(|c| c.delay(c.first_branch));
     let ends = stable.iter().flat_map(|s| [s.from, s.to]);
@@ -103,7 +104,8 @@ fn longest<'c>(
 /// The number of unstable roots from 0 to `until`; it changes `count` times, at the delays
 /// `changes`.
 fn steps(
-    (count, changes): (u64, impl Iterator<Item = f64>),
+    count: u64,
+    changes: impl Iterator<Item = f64>,
     until: f64,
     n_unstable: impl Fn(f64) -> u64,
 ) -> Vec<(f64, f64, u64)> {

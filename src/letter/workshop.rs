@@ -111,11 +111,23 @@ pub(crate) struct Workshop<'a> {
     pub(super) made: BTreeMap<&'static str, Figure>,
 }
 
+/// What was made of a source.
+struct Made<'p> {
+    title: String,
+    /// The sweep or the case.
+    text: String,
+    /// The command that makes it.
+    command: &'static str,
+    /// The picture, as SVG.
+    picture: &'p [u8],
+}
+
 impl<'a> Workshop<'a> {
     /// A workshop in a folder, with nothing made yet.
     #[must_use]
     pub(crate) fn new(
-        (folder, kept): (&'a Path, bool),
+        folder: &'a Path,
+        kept: bool,
         quick: bool,
         threads: usize,
         provenance: &'a Provenance,
@@ -163,7 +175,13 @@ impl<'a> Workshop<'a> {
         let map = MapFile::open(&path)?;
         let options = PictureOptions::default();
         let drawn = picture::draw(&map, &path.with_extension("svg"), &options)?;
-        self.keep(source, (title, text, "run"), drawn.bytes())?;
+        let made = Made {
+            title,
+            text,
+            command: "run",
+            picture: drawn.bytes(),
+        };
+        self.keep(source, made)?;
         Ok(map)
     }
 
@@ -198,12 +216,14 @@ impl<'a> Workshop<'a> {
         }
         let options = PictureOptions::default();
         let picture = path.with_extension("svg");
-        let drawn = picture::draw_trace((&spec, &trace), &path, &picture, &options)?;
-        self.keep(
-            source,
-            (spec.title.clone(), text, "simulate"),
-            drawn.bytes(),
-        )?;
+        let drawn = picture::draw_trace(&spec, &trace, &path, &picture, &options)?;
+        let made = Made {
+            title: spec.title.clone(),
+            text,
+            command: "simulate",
+            picture: drawn.bytes(),
+        };
+        self.keep(source, made)?;
         Ok((spec, trace))
     }
 
@@ -251,8 +271,12 @@ impl<'a> Workshop<'a> {
     fn keep(
         &mut self,
         source: &Source,
-        (title, text, command): (String, String, &str),
-        picture: &[u8],
+        Made {
+            title,
+            text,
+            command,
+            picture,
+        }: Made,
     ) -> Result<(), LetterError> {
         let svg = String::from_utf8_lossy(picture).into_owned();
         let shipped = text == source.text;

@@ -12,13 +12,13 @@ impl Setting {
     #[must_use]
     pub(crate) fn beyond_curve(&self, units: &Units) -> Option<String> {
         let v0 = Parameter::V0;
-        remark(self.law()?, (v0.name(), &[self.get(v0)]), units)
+        remark(self.law()?, v0.name(), &[self.get(v0)], units)
     }
 
     /// A remark on a critical velocity beyond the points of a measured friction law.
     #[must_use]
     pub(crate) fn vc_beyond_curve(&self, vc: f64, units: &Units) -> Option<String> {
-        remark(self.law()?, ("v_c", &[vc]), units)
+        remark(self.law()?, "v_c", &[vc], units)
     }
 }
 
@@ -29,16 +29,12 @@ impl SweepSpec {
         let axis = self.axes.iter().find(|a| a.parameter == Parameter::V0);
         let fixed = [self.fixed.get(Parameter::V0)];
         let speeds = axis.map_or(&fixed[..], |axis| &axis.values);
-        remark(
-            self.fixed.law()?,
-            (Parameter::V0.name(), speeds),
-            &self.units,
-        )
+        remark(self.fixed.law()?, Parameter::V0.name(), speeds, &self.units)
     }
 }
 
 /// The remark on those of the speeds that lie beyond the points; none if none of them does.
-fn remark(law: &LawKind, (of, speeds): (&str, &[f64]), units: &Units) -> Option<String> {
+fn remark(law: &LawKind, of: &str, speeds: &[f64], units: &Units) -> Option<String> {
     let LawKind::Table(table) = law else {
         return None;
     };

@@ -120,8 +120,15 @@ pub fn best(search: &Search<impl Family>, stop: &Stop) -> Best {
     }
 }
 
-/// A place from which to go down, the abscissa there and the length scales around it.
-type Start = (f64, Place, Frame);
+/// A place from which to go down.
+#[derive(Debug, Clone, Copy)]
+struct Start {
+    /// The abscissa there, or another value to go down.
+    value: f64,
+    place: Place,
+    /// The length scales around it.
+    frame: Frame,
+}
 
 fn region(evaluator: &mut Evaluator, search: &Search<impl Family>, stretches: Stretches) -> Region {
     let hull = |values: &dyn Fn(usize) -> (f64, f64)| {
@@ -182,7 +189,11 @@ fn lattice(
                     tau: positive(apart * (stretch.to - stretch.from), stretch.to),
                 };
                 let place = stretch.at(part);
-                starts.push((of(place), place, frame));
+                starts.push(Start {
+                    value: of(place),
+                    place,
+                    frame,
+                });
             }
         }
     }
@@ -231,12 +242,12 @@ fn positive(length: f64, value: f64) -> f64 {
 
 /// The best of these starts that are not close to one another.
 fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
-    starts.sort_by(|p, q| p.0.total_cmp(&q.0));
+    starts.sort_by(|p, q| p.value.total_cmp(&q.value));
     let mut chosen: Vec<Start> = Vec::new();
     for start in starts {
-        let near = |(_, place, frame): &Start| {
-            (place.gain - start.1.gain).abs() < 2.5 * frame.gain
-                && (place.tau - start.1.tau).abs() < 2.5 * frame.tau
+        let near = |Start { place, frame, .. }: &Start| {
+            (place.gain - start.place.gain).abs() < 2.5 * frame.gain
+                && (place.tau - start.place.tau).abs() < 2.5 * frame.tau
         };
         if !chosen.iter().any(near) {
             chosen.push(start);
@@ -251,11 +262,11 @@ fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
 /// The lowest place to which descents from the best of `starts` lead.
 fn lowest(evaluator: &mut Evaluator, search: &Search<impl Family>, starts: Vec<Start>) -> Optimum {
     let mut best: Option<Optimum> = None;
-    for (abscissa, place, frame) in far_apart(starts) {
-        let mut found = optimum_near(evaluator, search, place, &frame);
-        if found.abscissa > abscissa {
+    for start in far_apart(starts) {
+        let mut found = optimum_near(evaluator, search, start.place, &start.frame);
+        if found.abscissa > start.value {
             // Beside accumulating roots the abscissa may be known here, and not around it.
-            found = unpolished(evaluator, search, (place, abscissa));
+            found = unpolished(evaluator, search, (start.place, start.value));
         }
         if best.as_ref().is_none_or(|b| found.abscissa < b.abscissa) {
             best = Some(found);
@@ -358,7 +369,11 @@ fn least_unstable(evaluator: &mut Evaluator, search: &Search<impl Family>) -> Op
                 gain: spread(search.gains, i),
                 tau: spread(search.delays, j),
             };
-            starts.push((evaluator.abscissa(search, place), place, frame));
+            starts.push(Start {
+                value: evaluator.abscissa(search, place),
+                place,
+                frame,
+            });
         }
     }
     lowest(evaluator, search, starts)

@@ -52,7 +52,7 @@ pub(super) fn unpolished<F: Family>(
     let frequency = rightmost.map(|root| root.lambda.im);
     let margin = match evaluator.ended() {
         true => None,
-        false => decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0)),
+        false => decided(search, place, abscissa, DESCENT_ERROR, 1.0, 0),
     };
     let accumulating = search.family.setting(place).is_some_and(|setting| {
         let essential = F::equation(&setting).essential_abscissa(place.tau);
@@ -80,7 +80,8 @@ fn decided<F: Family>(
     place: Place,
     abscissa: f64,
     blur: f64,
-    (side, expected): (f64, u64),
+    side: f64,
+    expected: u64,
 ) -> Option<f64> {
     let setting = search.family.setting(place)?;
     let right_of = |line| F::equation(&setting).right_of(place.tau, line);
@@ -104,7 +105,7 @@ fn optimum<F: Family>(
     // right there is none.
     let setting = search.family.setting(place);
     let blur = setting.map_or(f64::NAN, |setting| condition.blur::<F>(&setting, place.tau));
-    let count = |side, expected| decided(search, place, abscissa, blur, (side, expected)).is_some();
+    let count = |side, expected| decided(search, place, abscissa, blur, side, expected).is_some();
     Optimum {
         gain: place.gain,
         tau: place.tau,

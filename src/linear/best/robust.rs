@@ -93,7 +93,7 @@ impl<'s> Worst<'s> {
     }
 
     /// Goes down from a start.
-    fn descend(&mut self, (_, place, frame): &Start, largest: f64) -> (Place, f64) {
+    fn descend(&mut self, Start { place, frame, .. }: &Start, largest: f64) -> (Place, f64) {
         let search = self.search;
         let value = |place: Place, bound: f64| self.at(place, bound).0;
         descend(value, search, *place, frame, (largest, FINE))
@@ -144,21 +144,25 @@ pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robus
     // No setting of a region is better than its best one.
     let mut regions: Vec<_> = best.regions.iter().collect();
     regions.sort_by(|p, q| p.best.abscissa.total_cmp(&q.best.abscissa));
-    let mut found: Option<(Start, f64)> = None;
+    let mut found: Option<Start> = None;
     for region in regions {
-        let lowest = found.as_ref().map_or(0.0, |(_, value)| *value);
+        let lowest = found.as_ref().map_or(0.0, |start| start.value);
         if region.best.abscissa >= lowest {
             break;
         }
         let value = |place| worst.at(place, f64::INFINITY).0;
         for start in far_apart(lattice(&region.stretches, region.gains, value)) {
             let (place, value) = worst.descend(&start, 1.0);
-            if found.as_ref().is_none_or(|(_, least)| value < *least) {
-                found = Some(((value, place, start.2), value));
+            if found.as_ref().is_none_or(|least| value < least.value) {
+                found = Some(Start {
+                    value,
+                    place,
+                    ..start
+                });
             }
         }
     }
-    let (start, _) = found.filter(|(_, value)| *value < 0.0)?;
+    let start = found.filter(|start| start.value < 0.0)?;
     let found = worst.refined(start);
     (found.certified || found.worst_abscissa < -UNPROVED).then_some(found)
 }
@@ -168,7 +172,7 @@ impl Worst<'_> {
     fn refined(&mut self, mut start: Start) -> Robust {
         let mut proof = None;
         for _ in 0..MOST_PLACES {
-            match self.proved(start.1) {
+            match self.proved(start.place) {
                 Ok(bound) => {
                     proof = bound;
                     break;
@@ -176,11 +180,15 @@ impl Worst<'_> {
                 Err(changes) => {
                     self.places.push(changes);
                     let (place, value) = self.descend(&start, 0.1);
-                    start = (value, place, start.2);
+                    start = Start {
+                        value,
+                        place,
+                        ..start
+                    };
                 }
             }
         }
-        let place = start.1;
+        let place = start.place;
         let (value, worst_at) = self.at(place, f64::INFINITY);
         let groups = self.search.family.groups(place.gain);
         let roots = self

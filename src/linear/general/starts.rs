@@ -27,18 +27,12 @@ pub(super) fn starts(plane: &SystemPlane) -> Result<Vec<Start>, TooManyCurves> {
         } else {
             let (from, to) = (*plane.window().q.start(), *plane.window().q.end());
             let q = |j: usize| from + (to - from) * (j as f64 / ROWS as f64);
-            by_counts(plane, Across::Column(i), (ROWS, 1), &q, &mut starts)?;
+            by_counts(plane, Across::Column(i), ROWS, 1, &q, &mut starts)?;
         }
     }
     for longest in [false, true] {
         let p = |i: usize| column(plane, i);
-        by_counts(
-            plane,
-            Across::Edge { longest },
-            (COLUMNS, 2),
-            &p,
-            &mut starts,
-        )?;
+        by_counts(plane, Across::Edge { longest }, COLUMNS, 2, &p, &mut starts)?;
     }
     Ok(starts)
 }
@@ -88,7 +82,8 @@ fn on_line_of_delays(
 fn by_counts(
     plane: &SystemPlane,
     across: Across,
-    (steps, at_most): (usize, u64),
+    steps: usize,
+    at_most: u64,
     at: &dyn Fn(usize) -> f64,
     starts: &mut Vec<Start>,
 ) -> Result<(), TooManyCurves> {

@@ -62,7 +62,7 @@ pub(super) fn draw(
     let kinds = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
     let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
     let bounded = curves.iter().any(MapCurve::bounds_stability);
-    let key = Key::new((field, &unit), &planes, bounded, options)?.with(entries);
+    let key = Key::new(field, &unit, &planes, bounded, options)?.with(entries);
     let column = match options.no_legend {
         true => None,
         false => Some(body.cut_right(key.width(u), GAP * u)),
@@ -83,7 +83,7 @@ pub(super) fn draw(
         };
         draw_cells(panel, &plane, &key, scene);
         for curve in here {
-            draw_curve(panel, (curve, turned), &degrees, scene);
+            draw_curve(panel, curve, turned, &degrees, scene);
         }
         symbols::draw(panel, symbols, scene);
     }
@@ -142,12 +142,7 @@ fn cut(
 }
 
 /// Draws a curve; if `turned`, with its second parameter from left to right.
-fn draw_curve(
-    panel: &Panel,
-    (curve, turned): (&MapCurve, bool),
-    degrees: &Degrees,
-    scene: &mut Scene,
-) {
+fn draw_curve(panel: &Panel, curve: &MapCurve, turned: bool, degrees: &Degrees, scene: &mut Scene) {
     if curve.piece.stable_side != StableSide::Neither {
         let at = |v: &Vertex| match turned {
             true => panel.at(v.q, v.p),

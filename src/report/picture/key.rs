@@ -32,7 +32,8 @@ impl Key {
     /// # Errors
     /// When the options do not suit the field or its values.
     pub(super) fn new(
-        (field, unit): (Field, &str),
+        field: Field,
+        unit: &str,
         planes: &[Known],
         curves: bool,
         options: &PictureOptions,
@@ -207,7 +208,8 @@ mod tests {
 
     fn of(field: Field, cells: &[f64], curves: bool) -> Key {
         Key::new(
-            (field, "1"),
+            field,
+            "1",
             &[plane(cells)],
             curves,
             &PictureOptions::default(),
@@ -216,7 +218,7 @@ mod tests {
     }
 
     fn of_plane(field: Field, plane: Known) -> Key {
-        Key::new((field, "1"), &[plane], false, &PictureOptions::default()).unwrap()
+        Key::new(field, "1", &[plane], false, &PictureOptions::default()).unwrap()
     }
 
     fn texts(key: Key) -> Vec<Rich> {

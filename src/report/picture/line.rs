@@ -44,13 +44,14 @@ struct Graph {
 }
 
 /// Draws `fields` along the axis `view.x`. A single field is drawn for the other axes' values of
-/// every panel; several ones, with the same unit, only for those of the first panel. The number
-/// beside the options limits the cells.
+/// every panel; several ones, with the same unit, only for those of the first panel. At most
+/// `most` cells are drawn.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
     fields: &[Field],
-    (options, most): (&PictureOptions, usize),
+    options: &PictureOptions,
+    most: usize,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let Some(&field) = fields.first() else {

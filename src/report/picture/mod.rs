@@ -122,7 +122,8 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 /// # Errors
 /// When the name of the file is not that of a picture, or options have no meaning for a trace.
 pub fn draw_trace(
-    (spec, trace): (&CaseSpec, &Trace),
+    spec: &CaseSpec,
+    trace: &Trace,
     of: &Path,
     path: &Path,
     options: &PictureOptions,
@@ -132,7 +133,7 @@ pub fn draw_trace(
     options.about_values("a trace has no scale of values")?;
     let mut scene = Scene::new(options.size);
     let title = options.title.as_deref().unwrap_or(&spec.title);
-    trace::draw((spec, title), trace, &mut scene);
+    trace::draw(spec, title, trace, &mut scene);
     let origin = Origin {
         of: named(of) + " motion",
         named: "",
@@ -150,7 +151,7 @@ pub fn draw_trace_file(
     options: &PictureOptions,
 ) -> Result<Picture, PictureError> {
     apart(file.path(), path)?;
-    draw_trace((&file.spec, &file.trace), file.path(), path, options)
+    draw_trace(&file.spec, &file.trace, file.path(), path, options)
 }
 
 /// Draws a point for the file `path`, as [`draw`] does a map: its characteristic roots in the
@@ -199,7 +200,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             return Err(no_curves("only one axis is left to draw along"));
         }
         let fields = choice.shown_together(map, view.along.is_some());
-        line::draw(map, &view, &fields, (options, most), &mut scene)?;
+        line::draw(map, &view, &fields, options, most, &mut scene)?;
         return Ok(scene);
     };
     let curves = Curves::of(map, &view)?;

@@ -43,7 +43,7 @@ struct Strip {
 }
 
 /// Draws a trace of a case under a title.
-pub(super) fn draw((spec, title): (&CaseSpec, &str), trace: &Trace, scene: &mut Scene) {
+pub(super) fn draw(spec: &CaseSpec, title: &str, trace: &Trace, scene: &mut Scene) {
     let title = match title.trim() {
         "" => "Motion of the block",
         title => title,

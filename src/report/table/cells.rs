@@ -22,7 +22,8 @@ const MOST_TEXTS: usize = 1 << 16;
 /// When the map cannot be read or the text cannot be written, and once `stop` is set.
 pub fn write_cells(
     map: &MapFile,
-    (fields, held): (&[Field], &[Option<usize>]),
+    fields: &[Field],
+    held: &[Option<usize>],
     comments: bool,
     out: impl Write,
     stop: &AtomicBool,

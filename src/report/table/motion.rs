@@ -17,7 +17,8 @@ use crate::sweep::described::trace::{Quantity, TIME};
 /// # Errors
 /// When the text cannot be written, and once `stop` is set.
 pub fn write_samples(
-    (spec, trace): (&CaseSpec, &Trace),
+    spec: &CaseSpec,
+    trace: &Trace,
     quantities: &[&Quantity],
     comments: bool,
     out: impl Write,
@@ -49,7 +50,8 @@ pub fn write_samples(
 /// # Errors
 /// When the text cannot be written.
 pub fn write_events(
-    (spec, trace): (&CaseSpec, &Trace),
+    spec: &CaseSpec,
+    trace: &Trace,
     comments: bool,
     out: impl Write,
 ) -> Result<u64, TableError> {

@@ -19,7 +19,8 @@ pub(super) fn trace_window(
     setting: &Setting,
     of: [&Quantity; 2],
     window: &Window,
-    (degrees_of_stability, stop): (&[f64], &Stop),
+    degrees_of_stability: &[f64],
+    stop: &Stop,
 ) -> Result<Vec<DegreeCurves>, ModelError> {
     let system_at = |p: f64, q: f64| -> Result<SystemSetting, ModelError> {
         let mut setting = setting.clone();

@@ -94,10 +94,10 @@ pub(crate) fn trace_spanned(
     let degrees = &plan.spec.degrees_of_stability;
     let letter = traced_by_closed_form(&plan.spec, q);
     let curves = if let Some(p) = axes[p].parameter.known().filter(|_| letter) {
-        trace_window(&setting, p, &window, (degrees, stop))?
+        trace_window(&setting, p, &window, degrees, stop)?
     } else {
         let of = [&axes[p].parameter, &axes[q].parameter];
-        any_plane::trace_window(&setting, of, &window, (degrees, stop))?
+        any_plane::trace_window(&setting, of, &window, degrees, stop)?
     };
     Ok(BoundaryPlane {
         index: index.to_vec(),
@@ -113,7 +113,8 @@ fn trace_window(
     setting: &Setting,
     parameter: Parameter,
     window: &Window,
-    (degrees_of_stability, stop): (&[f64], &Stop),
+    degrees_of_stability: &[f64],
+    stop: &Stop,
 ) -> Result<Vec<DegreeCurves>, ModelError> {
     let groups_at = |p: f64| {
         let mut setting = setting.clone();
@@ -133,10 +134,10 @@ fn trace_window(
         for part in split(window, &jumps(setting, parameter)?) {
             let more = match sigma {
                 0.0 => {
-                    let start = valid_groups_at(*part.p.start());
+                    let (start, unit) = valid_groups_at(*part.p.start());
                     let scanned =
                         || scan_breakpoints(|p| valid_groups_at(p).0, &part.p, SCAN_STEPS);
-                    let breakpoints = breakpoints(setting, parameter, start, scanned)?;
+                    let breakpoints = breakpoints(setting, parameter, start, unit, scanned)?;
                     trace(crossings_at, &breakpoints, &part, stop)
                 }
                 _ => decay::trace(valid_groups_at, sigma, &part, stop),
@@ -153,11 +154,12 @@ fn trace_window(
 }
 
 /// Values of `parameter` at which the number of crossing curves changes. `start` has the groups at
-/// one value and the unit of time. The values are `scanned` for where they have no closed form.
+/// one value. The values are `scanned` for where they have no closed form.
 fn breakpoints(
     setting: &Setting,
     parameter: Parameter,
-    (start, time_unit): (Groups, f64),
+    start: Groups,
+    time_unit: f64,
     scanned: impl Fn() -> Vec<f64>,
 ) -> Result<Vec<f64>, ModelError> {
     Ok(match parameter {
