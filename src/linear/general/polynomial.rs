@@ -133,6 +133,13 @@ impl Polynomial {
         &self.errors[..=self.degree]
     }
 
+    /// Whether all coefficients and their errors are finite.
+    #[inline]
+    pub(super) fn is_finite(&self) -> bool {
+        let mut all = self.coefficients().iter().chain(self.errors());
+        all.all(|number| number.is_finite())
+    }
+
     #[inline]
     pub(in crate::linear) fn coefficient(&self, k: usize) -> Rounded {
         Rounded {

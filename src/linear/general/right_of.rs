@@ -312,7 +312,8 @@ impl RootCounter {
         if system.class() == Class::NeutralLimit && line == 0.0 {
             modulus = modulus.without_open_leading();
         }
-        if !modulus.leading().decided() {
+        // κ² is beyond all numbers before κ is.
+        if !modulus.leading().decided() || !modulus.is_finite() {
             return Err(open);
         }
         if modulus.leading().value < 0.0 {
@@ -365,8 +366,27 @@ impl RootCounter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::feedback_loop::FeedbackLoop;
     use crate::linear::general::Polynomial;
-    use crate::model::Channel;
+    use crate::model::{Channel, Groups, Lags};
+
+    /// The damped root −0.223 of a weak control is right of the line, however large e^(στ) is.
+    #[test]
+    fn numbers_beyond_all_decide_nothing() {
+        let lags = Lags {
+            load: 0.2,
+            velocity: 0.2,
+            sensor: 0.0,
+        };
+        let groups = Groups::new(4.7, -0.4, 0.0);
+        let counter =
+            RootCounter::new(&FeedbackLoop::of_letter(groups, Channel::default(), lags).system());
+        for tau in [2.0, 300.0, 700.0, 768.4, 900.0, 1600.0] {
+            let found = counter.right_of(tau, -0.48);
+            assert_ne!(found, RightOf::Roots(0), "{tau}");
+        }
+        assert_eq!(counter.right_of(0.1, -0.2), RightOf::Roots(0));
+    }
 
     /// Right angles one way and back, in every order of signs: the sum is known without rounding.
     #[test]
