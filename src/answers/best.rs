@@ -172,16 +172,23 @@ fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
 /// The family of `setting` with the letter's own feedback. It is an error if |b| is so large that
 /// no search resolves the delays of the optima.
 fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
-    let sliding = setting.sliding_point()?;
-    let fixed = setting.oscillator()?.groups(sliding, setting.control());
-    let mu_prime = sliding.mu_prime;
+    let (oscillator, sliding) = (setting.oscillator()?, setting.sliding_point()?);
+    let family = Letter::of(&oscillator, sliding, setting.control(), gain);
+    let dashpots = family.dashpots.sum();
     ModelError::check(
         "mu_prime",
-        mu_prime,
+        sliding.mu_prime,
         "such that |mu_prime| N0/sqrt(kappa M) is at most 1e4 where best settings are searched",
-        fixed.b.abs() <= STEEPEST,
+        (family.fixed.b - dashpots).abs() <= STEEPEST,
     )?;
-    Ok(Letter { fixed, gain })
+    ModelError::check(
+        "damping",
+        setting.get(Parameter::Damping),
+        "such that (damping + viscous)/sqrt(kappa M) is at most 1e4 where best settings are \
+            searched",
+        dashpots <= STEEPEST,
+    )?;
+    Ok(family)
 }
 
 /// A copy of `setting` in which what is searched acts.

@@ -6,7 +6,7 @@ use crate::linear::margins::{
     SlidingLaw,
 };
 use crate::model::stop::Stop;
-use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
+use crate::model::{Control, Dashpots, Feedback, FrictionLaw, ModelError, Oscillator};
 use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 
@@ -76,7 +76,12 @@ impl SettingMargins {
             tau,
             decay: decay * oscillator.time_unit(),
         };
-        let beyond = (!setting.is_of_letter()).then_some(Beyond { channel, lags });
+        let Dashpots { damping, .. } = oscillator.dashpot_ratios();
+        let beyond = (!setting.is_of_letter()).then_some(Beyond {
+            channel,
+            lags,
+            damping,
+        });
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
             case: beyond.map_or_else(
@@ -164,7 +169,12 @@ impl SettingMargins {
         // √(κM)/N0.
         let damping = self.oscillator.mass() / self.oscillator.time_unit();
         let slope = damping / self.oscillator.normal_load();
-        let limits = on_case!(&self.case, case => search.slope(case));
+        let Limits { lower, upper } = on_case!(&self.case, case => search.slope(case));
+        let still = self.oscillator.dashpot_ratios().sum();
+        let limits = Limits {
+            lower: lower - still,
+            upper: upper - still,
+        };
         (Parameter::MuPrime, scaled(limits, slope))
     }
 
@@ -189,12 +199,11 @@ impl SettingMargins {
     /// The stability radius.
     #[must_use]
     pub fn radius(&self) -> Radius {
-        match self.sliding() {
-            Some((law, v0)) => {
-                on_case!(&self.case, case => margins::radius_with_law(case, &law, v0))
-            }
-            None => on_case!(&self.case, case => margins::radius(case)),
+        if let Some((law, v0)) = self.sliding() {
+            return on_case!(&self.case, case => margins::radius_with_law(case, &law, v0));
         }
+        let still = self.oscillator.dashpot_ratios().sum();
+        on_case!(&self.case, case => margins::radius_up_to(case, 1.0, still))
     }
 
     fn sliding(&self) -> Option<(SlidingLaw<'_>, f64)> {

@@ -265,7 +265,7 @@ pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
             cells.extend(outer.first().map(|(_, b)| (*b, stable)));
         }
     }
-    let end = LobeControl::Velocity.lobe_end(0);
+    let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
     let limit = VelocityLimit {
         end: end.b,
         place: (end.gain, end.tau),

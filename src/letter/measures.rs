@@ -83,7 +83,7 @@ pub(super) fn linear_measures() -> Vec<Measure> {
     let mut measures = vec![Measure {
         name: "steepest slope".into(),
         meaning: "largest |μ′| that can be stabilised, √(κM)/N0; none: there is no limit",
-        velocity: -LobeControl::Velocity.lobe_end(0).b,
+        velocity: -LobeControl::Velocity { damping: 0.0 }.lobe_end(0).b,
         load: f64::INFINITY,
         more: true,
         error: Some(1e-12),

@@ -243,7 +243,7 @@ mod tests {
     fn velocity_plane(b: f64, a_n: f64) -> (impl Fn(f64) -> Groups, Vec<f64>) {
         (
             move |a_v| Groups::new(b, a_v, a_n),
-            velocity_gain_breakpoints(b, a_n),
+            velocity_gain_breakpoints(b, a_n, 0.0),
         )
     }
 

@@ -3,21 +3,24 @@
 //! ```text
 //! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ)                                           (1)
 //! B = B₀ L_a L_v L_s,   A = a_n N₀ L_v + a_v V₀ L_a,   L = 1 + Tλ                            (2)
-//! B₀ = λ² + bλ + 1,   N₀ = 1,   V₀ = b + λ                                                   (3)
-//! B₀ = (1 + Tλ)(λ² + 1) + fλ,   N₀ = 1 + (1 − c)Tλ,   V₀ = f + λ(1 + Tλ),   f = α − β + αTλ  (4)
+//! B₀ = λ² + bλ + 1,   N₀ = 1,   V₀ = b − d + λ                                               (3)
+//! B₀ = (1 + Tλ)(λ² + (d + g)λ + 1) + fλ,   N₀ = 1 + (1 − c)Tλ                                (4)
+//! V₀ = f + (λ + g)(1 + Tλ),   f = α − β + αTλ
 //! ```
 //!
 //! The load follows its command with the lag T_a, the pulling velocity with T_v, and the sensor
 //! follows the elongation with T_s. Each lag divides the signal by 1 + Tλ. (3) is the letter's
-//! friction, with b, a_v and a_n of [`crate::model::Groups`]. (4) is friction with a state, with α,
-//! β, T and c of [`crate::model::StateGroups`]. Times are in units of √(M/κ).
+//! friction, with b and a_v of [`crate::model::Groups`], b with both dashpots, and a_n = μ_K α_N/κ
+//! itself: the dashpot d beside the spring, which feels the pulling velocity, is in V₀. (4) is
+//! friction with a state, with α, β, T and c of [`crate::model::StateGroups`]; g is the dashpot to
+//! the ground. Times are in units of √(M/κ).
 
 use num_complex::Complex64;
 
 use super::characteristic::late;
 use super::general::{Polynomial, Source, System};
 use crate::model::groups::open_loop_coefficients;
-use crate::model::{Channel, Groups, Lags, StateGroups};
+use crate::model::{Channel, Dashpots, Groups, Lags, StateGroups};
 
 /// The block on its spring with friction: (3) for the letter's law, (4) for one with a state.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +33,8 @@ pub struct Friction {
     velocity: Polynomial,
     /// b of the letter's friction.
     slope: Option<f64>,
+    /// d.
+    damping: f64,
 }
 
 /// A feedback loop, (1) and (2).
@@ -45,6 +50,7 @@ pub struct FeedbackLoop {
     passing: LagPolynomials,
     /// b of the letter's friction.
     slope: Option<f64>,
+    damping: f64,
     a_v: f64,
     a_n: f64,
     channel: Channel,
@@ -116,7 +122,7 @@ pub(super) fn times(one: &Polynomial, other: &Polynomial) -> Polynomial {
 impl Friction {
     /// Friction with a state, (4).
     #[must_use]
-    pub(crate) fn of_state(groups: StateGroups) -> Self {
+    pub(crate) fn of_state(groups: StateGroups, dashpots: Dashpots) -> Self {
         let StateGroups {
             direct,
             evolution,
@@ -128,9 +134,12 @@ impl Friction {
         // α − β + αTλ.
         let effect = number(direct).plus(&number(evolution), -1.0);
         let effect = effect.plus(&times(&number(direct), &state), 1.0);
-        let moving = times(&Polynomial::variable(), &number(1.0).plus(&state, 1.0));
+        let moving = times(
+            &polynomial(&[dashpots.viscous, 1.0]),
+            &number(1.0).plus(&state, 1.0),
+        );
         let oscillator = times(
-            &polynomial(&[1.0, 0.0, 1.0]),
+            &polynomial(&open_loop_coefficients(dashpots.sum())),
             &number(1.0).plus(&state, 1.0),
         );
         let kept = number(1.0).plus(&number(load_memory), -1.0);
@@ -139,23 +148,25 @@ impl Friction {
             load: number(1.0).plus(&times(&kept, &state), 1.0),
             velocity: effect.plus(&moving, 1.0),
             slope: None,
+            damping: dashpots.damping,
         }
     }
 
-    /// The letter's friction, (3).
+    /// The letter's friction, (3), with the dashpot d beside the spring.
     #[must_use]
-    pub(crate) fn of_slope(b: f64) -> Self {
+    pub(crate) fn of_slope(b: f64, damping: f64) -> Self {
         Self {
             open: polynomial(&open_loop_coefficients(b)),
             load: polynomial(&[1.0]),
-            velocity: polynomial(&[b, 1.0]),
+            velocity: polynomial(&[b - damping, 1.0]),
             slope: Some(b),
+            damping,
         }
     }
 }
 
 impl FeedbackLoop {
-    /// A loop with the gains a_v and a_n.
+    /// A loop with the gains a_v and a_n, the latter without what a dashpot takes off it.
     #[must_use]
     pub fn new(friction: Friction, a_v: f64, a_n: f64, channel: Channel, lags: Lags) -> Self {
         let passing = LagPolynomials::of(&lags);
@@ -165,6 +176,7 @@ impl FeedbackLoop {
             velocity: times(&friction.velocity, &passing.load),
             passing,
             slope: friction.slope,
+            damping: friction.damping,
             a_v,
             a_n,
             channel,
@@ -172,11 +184,12 @@ impl FeedbackLoop {
         }
     }
 
-    /// The loop of the letter's friction.
+    /// The loop of the letter's friction with these groups, of an undamped spring: a damped one has
+    /// the same equation where nothing lags.
     #[must_use]
     pub(crate) fn of_letter(groups: Groups, channel: Channel, lags: Lags) -> Self {
         let Groups { b, a_v, a_n } = groups;
-        Self::new(Friction::of_slope(b), a_v, a_n, channel, lags)
+        Self::new(Friction::of_slope(b, 0.0), a_v, a_n, channel, lags)
     }
 
     /// B and A.
@@ -194,6 +207,7 @@ impl FeedbackLoop {
         match self.slope {
             Some(b) => system.known_by(Source {
                 groups: Groups::new(b, self.a_v, self.a_n),
+                damping: self.damping,
                 lags: self.lags,
             }),
             None => system,

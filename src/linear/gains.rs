@@ -48,11 +48,15 @@ pub fn crossing_near(omega: f64, groups: Groups) -> Option<Crossing> {
 }
 
 /// The velocity gains a_v at which the crossings change their number, for given `b` and a_n: the
-/// fold ω₋ = ω₊, and ω₋ = 0.
+/// fold ω₋ = ω₊, and ω₋ = 0. With a dashpot d = `damping` beside the spring, a_n is that before it
+/// falls by d a_v.
 ///
-/// At b = 0 the one such gain is a_v = 0, where control vanishes if a_n does.
+/// At b = d = 0 the one such gain is a_v = 0, where control vanishes if a_n does.
 #[must_use]
-pub fn velocity_gain_breakpoints(b: f64, a_n: f64) -> Vec<f64> {
+pub fn velocity_gain_breakpoints(b: f64, a_n: f64, damping: f64) -> Vec<f64> {
+    if damping != 0.0 {
+        return damped_breakpoints(b, a_n, damping);
+    }
     if b == 0.0 {
         return vec![0.0];
     }
@@ -61,6 +65,35 @@ pub fn velocity_gain_breakpoints(b: f64, a_n: f64) -> Vec<f64> {
         (2.0 * b - c) * (2.0 * b + c) / (8.0 * b),
         (1.0 - 2.0 * a_n) / (2.0 * b),
     ]
+}
+
+/// The gains (3) with a dashpot d > 0: the zeros of c² − 4e and of e, with
+///
+/// ```text
+/// |P|² − |Q|² = x² + cx + e,   c = b² − 2 + 2 a_n − 2d a_v,   e = 1 − 2 a_n + 2(d − b) a_v  (3)
+/// ```
+fn damped_breakpoints(b: f64, a_n: f64, damping: f64) -> Vec<f64> {
+    let [far, near] = damped_folds(b, a_n, damping);
+    vec![(2.0 * a_n - 1.0) / (2.0 * (damping - b)), far, near]
+}
+
+/// The zeros of c² − 4e of (3), that of larger size first: it is infinite without a dashpot. NaN
+/// where there are none.
+fn damped_folds(b: f64, a_n: f64, damping: f64) -> [f64; 2] {
+    let (c, e) = (b.mul_add(b, 2.0 * a_n - 2.0), 1.0 - 2.0 * a_n);
+    // d² a_v² − 2h a_v + (c² − 4e)/4 = 0.
+    let half = 0.5 * c * damping + damping - b;
+    let constant = 0.25 * (c * c - 4.0 * e);
+    let square = damping * damping;
+    let large = half + (half * half - square * constant).sqrt().copysign(half);
+    [large / square, constant / large]
+}
+
+/// The a_v at which the crossings of pure velocity control vanish as its gain becomes weaker, at
+/// the slope `b` < 0, dashpots included, with a dashpot d = `damping` beside the spring.
+#[must_use]
+pub(crate) fn velocity_fold(b: f64, damping: f64) -> f64 {
+    damped_folds(b, 0.0, damping)[1]
 }
 
 /// The load gains a_n at which the crossings change their number, for given `b` and a_v; see

@@ -6,8 +6,9 @@
 //! (b² + 2 a_n)² − 4 b² + 8 b a_v,                                                          (1)
 //! ```
 //!
-//! is positive. On its zero ω₋ = ω₊ = ω*, the fold of the crossing curve. A lobe of stable delays
-//! between the fold's two arms shrinks to a point where the arms have the same slope there,
+//! is positive; [`super::gains`] has it with a dashpot. On its zero ω₋ = ω₊ = ω*, the fold of the
+//! crossing curve. A lobe of stable delays between the fold's two arms shrinks to a point where the
+//! arms have the same slope there,
 //!
 //! ```text
 //! ω* dθ/dω = θ + 2πk   at   ω = ω*.                                                        (2)
@@ -18,6 +19,7 @@ use std::f64::consts::{SQRT_2, TAU};
 use num_complex::Complex64;
 
 use super::crossing::Crossings;
+use super::gains::velocity_fold;
 use super::roots::bisect;
 use crate::model::Groups;
 use crate::model::elementary::arg;
@@ -29,13 +31,16 @@ use crate::model::groups::{feedback, open_loop};
 /// use slipmap::linear::lobes::LobeControl;
 ///
 /// // Velocity control cannot stabilise sliding below this slope; the letter says −0.68.
-/// let end = LobeControl::Velocity.lobe_end(0);
+/// let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
 /// assert!((end.b - -0.725_635_939_603).abs() < 1e-12);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LobeControl {
-    /// Pure velocity control, a_n = 0.
-    Velocity,
+    /// Pure velocity control of negative gain.
+    Velocity {
+        /// d ≥ 0, the dashpot beside the spring: a_n = −d a_v.
+        damping: f64,
+    },
     /// Pure load control with positive gain, a_v = 0.
     PositiveLoad,
 }
@@ -43,7 +48,7 @@ pub enum LobeControl {
 /// The point to which a lobe of stable delays shrinks, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LobeEnd {
-    /// The slope b* < 0: the lobe exists for b* < b < 0.
+    /// The slope b* < 0, dashpots included: the lobe exists for b* < b < 0.
     pub b: f64,
     /// Frequency ω* of the pair that touches the axis.
     pub omega: f64,
@@ -57,10 +62,14 @@ impl LobeControl {
     /// The groups on the fold (1) at slope `b` < 0, and its frequency ω*.
     fn fold(self, b: f64) -> (Groups, f64) {
         match self {
-            Self::Velocity => (
-                Groups::new(b, 0.5 * b - b * b * b / 8.0, 0.0),
-                (1.0 - 0.5 * b * b).sqrt(),
-            ),
+            Self::Velocity { damping } => {
+                let a_v = velocity_fold(b, damping);
+                let squared = 1.0 - 0.5 * b * b + damping * a_v;
+                (
+                    Groups::new(b, a_v, 0.0).coupled(damping),
+                    squared.max(0.0).sqrt(),
+                )
+            }
             Self::PositiveLoad => (
                 Groups::new(b, 0.0, minimal_positive_load_gain(b)),
                 (1.0 + b).sqrt(),
@@ -71,7 +80,11 @@ impl LobeControl {
     /// The most negative slope at which the fold has a frequency.
     fn steepest(self) -> f64 {
         match self {
-            Self::Velocity => -SQRT_2,
+            Self::Velocity { damping: 0.0 } => -SQRT_2,
+            // There the fold comes to ω* = 0.
+            Self::Velocity { damping } => {
+                bisect(-SQRT_2, 0.0, |b| b * b - 2.0 + damping / (damping - b))
+            }
             Self::PositiveLoad => -1.0,
         }
     }
@@ -99,7 +112,10 @@ impl LobeControl {
             b,
             omega,
             tau: (theta + turns) / omega,
-            gain: groups.a_v + groups.a_n,
+            gain: match self {
+                Self::Velocity { .. } => groups.a_v,
+                Self::PositiveLoad => groups.a_n,
+            },
         }
     }
 }
@@ -145,14 +161,83 @@ mod tests {
 
     #[test]
     fn ends_of_the_velocity_lobes() {
-        let first = LobeControl::Velocity.lobe_end(0);
+        let first = LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
         assert!((first.b - -0.725_635_939_603).abs() < 1e-12, "{first:?}");
         assert!((first.omega - 0.858_327_584_072).abs() < 1e-12);
         assert!((first.tau - 4.363_587_932_563).abs() < 2e-11);
         assert!((first.gain - -0.315_057_744_535).abs() < 1e-12);
-        let [second, third] = [1, 2].map(|k| LobeControl::Velocity.lobe_end(k).b);
+        let [second, third] = [1, 2].map(|k| LobeControl::Velocity { damping: 0.0 }.lobe_end(k).b);
         assert!((second - -0.369_620_351_789).abs() < 1e-12, "{second}");
         assert!((third - -0.240_297_356_210).abs() < 1e-12, "{third}");
+    }
+
+    /// ζ, the slope without the dashpot, ω*, the gain and the delay of ends with a dashpot of
+    /// damping ratio ζ = d/2 beside the spring, by a program that shares nothing with this one.
+    const DAMPED: [[f64; 5]; 7] = [
+        [
+            0.0,
+            -0.7256359396031,
+            0.858327584072,
+            -0.315057744535,
+            4.36358793256,
+        ],
+        [
+            0.01,
+            -0.7401182341093,
+            0.857025441355,
+            -0.311112866058,
+            4.37992370341,
+        ],
+        [
+            0.02,
+            -0.7546997851432,
+            0.855753073518,
+            -0.307219643046,
+            4.39605435968,
+        ],
+        [
+            0.05,
+            -0.7990305787274,
+            0.852110885483,
+            -0.295851638438,
+            4.44319544795,
+        ],
+        [
+            0.1,
+            -0.8748052757453,
+            0.846598811977,
+            -0.27794685736,
+            4.51751493517,
+        ],
+        [
+            0.2,
+            -1.032886766507,
+            0.837459149665,
+            -0.245973357581,
+            4.65015791238,
+        ],
+        [
+            0.5,
+            -1.547254441942,
+            0.820871343101,
+            -0.176426525963,
+            4.93574635671,
+        ],
+    ];
+
+    #[test]
+    fn ends_of_the_damped_velocity_lobe() {
+        for [ratio, slope, omega, gain, tau] in DAMPED {
+            let damping = 2.0 * ratio;
+            let end = LobeControl::Velocity { damping }.lobe_end(0);
+            let found = [end.b - damping, end.omega, end.gain, end.tau];
+            for (found, expected) in found.into_iter().zip([slope, omega, gain, tau]) {
+                assert!(
+                    (found - expected).abs() < 1e-11,
+                    "{ratio}: {found} {expected}"
+                );
+            }
+        }
     }
 
     #[test]
@@ -171,12 +256,12 @@ mod tests {
     fn the_ends_lie_on_folds() {
         for lobe in 0..6 {
             for (control, beyond) in [
-                (LobeControl::Velocity, 1.0),
+                (LobeControl::Velocity { damping: 0.0 }, 1.0),
                 (LobeControl::PositiveLoad, -1.0),
             ] {
                 let end = control.lobe_end(lobe);
                 let moved = |by: f64| match control {
-                    LobeControl::Velocity => Groups::new(end.b, end.gain + by, 0.0),
+                    LobeControl::Velocity { .. } => Groups::new(end.b, end.gain + by, 0.0),
                     LobeControl::PositiveLoad => Groups::new(end.b, 0.0, end.gain + by),
                 };
                 assert_eq!(Crossings::of(moved(1e-9 * beyond)).iter().count(), 0);

@@ -39,6 +39,19 @@ impl Sensitivity {
         Self::by_derivatives(&jet, per, lambda)
     }
 
+    /// The same where a_n falls by d a_v, as with a dashpot beside the spring: a_v is then
+    /// ∂λ/∂a_v − d ∂λ/∂a_n.
+    #[must_use]
+    pub(crate) fn coupled(self, damping: f64) -> Self {
+        if damping == 0.0 {
+            return self;
+        }
+        Self {
+            a_v: self.a_v - damping * self.a_n,
+            ..self
+        }
+    }
+
     /// At the root `lambda` of an equation with the jet `jet` there, from the derivatives of D with
     /// respect to the groups.
     #[must_use]

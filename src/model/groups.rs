@@ -34,6 +34,17 @@ impl Groups {
         Self { b, a_v, a_n }
     }
 
+    /// These groups where a dashpot d = c/√(κM) beside the spring feels the pulling velocity: it
+    /// takes d a_v off a_n.
+    #[inline]
+    #[must_use]
+    pub(crate) fn coupled(self, damping: f64) -> Self {
+        Self {
+            a_n: self.a_n - damping * self.a_v,
+            ..self
+        }
+    }
+
     /// A where b + λ is the real number `moving`, rounded once.
     #[inline]
     #[must_use]

@@ -42,6 +42,6 @@ pub use error::ModelError;
 pub use feedback::{Channel, Feedback, Lags};
 pub use groups::Groups;
 pub use law::FrictionLaw;
-pub use oscillator::{Control, Oscillator, SlidingPoint};
+pub use oscillator::{Control, Dashpots, Oscillator, SlidingPoint};
 pub use rate_and_state::{RateAndState, StateGroups};
 pub use table::Table;

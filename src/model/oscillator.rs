@@ -1,4 +1,4 @@
-//! The dimensional oscillator, the control law, and their dimensionless groups.
+//! The dimensional oscillator with its dashpots, the control law, and their dimensionless groups.
 
 use super::{FrictionLaw, Groups, ModelError};
 
@@ -23,6 +23,26 @@ pub struct Oscillator {
     time_unit: f64,
     /// √(κM), the unit of damping.
     damping_unit: f64,
+    /// Physical.
+    dashpots: Dashpots,
+}
+
+/// Dashpots beside the spring and to the ground, mass/time; or both in units of √(κM), see
+/// [`Oscillator::dashpot_ratios`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dashpots {
+    /// c ≥ 0, beside the spring: it pulls the block with c ȧ.
+    pub damping: f64,
+    /// c_g ≥ 0, to the ground, independent of the load: it holds the block with c_g ẋ.
+    pub viscous: f64,
+}
+
+impl Dashpots {
+    /// d + g, what both add to b.
+    #[must_use]
+    pub fn sum(&self) -> f64 {
+        self.damping + self.viscous
+    }
 }
 
 impl Default for Oscillator {
@@ -34,6 +54,7 @@ impl Default for Oscillator {
             normal_load: 1.0,
             time_unit: 1.0,
             damping_unit: 1.0,
+            dashpots: Dashpots::default(),
         }
     }
 }
@@ -52,7 +73,30 @@ impl Oscillator {
             normal_load: ModelError::positive("normal_load", normal_load)?,
             time_unit: (mass / stiffness).sqrt(),
             damping_unit: (stiffness * mass).sqrt(),
+            dashpots: Dashpots::default(),
         })
+    }
+
+    /// This oscillator with dashpots.
+    ///
+    /// # Errors
+    /// Both must be finite and at least 0.
+    pub fn damped(self, dashpots: Dashpots) -> Result<Self, ModelError> {
+        let Dashpots { damping, viscous } = dashpots;
+        for (name, value) in [("damping", damping), ("viscous", viscous)] {
+            ModelError::check(name, value, "finite and at least 0", value >= 0.0)?;
+        }
+        Ok(Self { dashpots, ..self })
+    }
+
+    /// d = c/√(κM) and g = c_g/√(κM): twice their damping ratios.
+    #[must_use]
+    pub fn dashpot_ratios(&self) -> Dashpots {
+        let Dashpots { damping, viscous } = self.dashpots;
+        Dashpots {
+            damping: damping / self.damping_unit,
+            viscous: viscous / self.damping_unit,
+        }
     }
 
     /// M.
@@ -80,13 +124,40 @@ impl Oscillator {
     }
 
     /// The dimensionless groups at a sliding point under control (physics of the letter's Eq. 3).
+    ///
+    /// With dashpots the equation is the letter's too, with b + d + g in the place of b and
+    /// a_n − d a_v in that of a_n: the dashpot beside the spring feels the pulling velocity.
     #[must_use]
     #[inline]
     pub fn groups(&self, sliding: SlidingPoint, control: Control) -> Groups {
+        self.groups_without_coupling(sliding, control)
+            .coupled(self.dashpot_ratios().damping)
+    }
+
+    /// The groups but for the last step: b includes the dashpots, a_n does not yet.
+    #[must_use]
+    #[inline]
+    pub(crate) fn groups_without_coupling(
+        &self,
+        sliding: SlidingPoint,
+        control: Control,
+    ) -> Groups {
         Groups {
-            b: sliding.mu_prime * self.normal_load / self.damping_unit,
+            b: sliding.mu_prime * self.normal_load / self.damping_unit
+                + self.dashpot_ratios().sum(),
             a_v: control.alpha_v * self.time_unit,
             a_n: sliding.mu_k * control.alpha_n / self.stiffness,
+        }
+    }
+
+    /// How the groups before that step grow with their parameters: b per μ_K′, a_v per α_v, a_n per
+    /// α_N.
+    #[must_use]
+    pub(crate) fn groups_per_parameter(&self, sliding: SlidingPoint) -> Groups {
+        Groups {
+            b: self.normal_load / self.damping_unit,
+            a_v: self.time_unit,
+            a_n: sliding.mu_k / self.stiffness,
         }
     }
 }

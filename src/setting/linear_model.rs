@@ -7,9 +7,19 @@ use super::values::Setting;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
-use crate::model::{Channel, Feedback, Groups, Lags, ModelError, Oscillator};
+use crate::model::{Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator};
 
 impl Setting {
+    /// Both gains.
+    #[inline]
+    #[must_use]
+    pub fn control(&self) -> Control {
+        Control {
+            alpha_v: self.get(Parameter::AlphaV),
+            alpha_n: self.get(Parameter::AlphaN),
+        }
+    }
+
     /// The feedback, in physical units.
     #[must_use]
     pub fn feedback(&self) -> Feedback {
@@ -55,17 +65,19 @@ impl Setting {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn feedback_loop(&self) -> Result<FeedbackLoop, ModelError> {
-        let (groups, oscillator) = self.with_groups()?;
-        Ok(self.loop_around(groups, &oscillator))
+        self.loop_around(&self.oscillator()?)
     }
 
-    fn loop_around(&self, Groups { b, a_v, a_n }: Groups, by: &Oscillator) -> FeedbackLoop {
+    fn loop_around(&self, by: &Oscillator) -> Result<FeedbackLoop, ModelError> {
+        let sliding = self.sliding_point()?;
+        let Groups { b, a_v, a_n } = by.groups_without_coupling(sliding, self.control());
+        let dashpots = by.dashpot_ratios();
         let friction = match self.rate_and_state() {
-            Some(law) => Friction::of_state(law.groups(by, self.get(Parameter::V0))),
-            None => Friction::of_slope(b),
+            Some(law) => Friction::of_state(law.groups(by, self.get(Parameter::V0)), dashpots),
+            None => Friction::of_slope(b, dashpots.damping),
         };
         let Feedback { channel, lags, .. } = self.feedback().dimensionless(by);
-        FeedbackLoop::new(friction, a_v, a_n, channel, lags)
+        Ok(FeedbackLoop::new(friction, a_v, a_n, channel, lags))
     }
 
     /// Whether the linear model is the same at all delays. It is not where the polynomials of a
@@ -123,7 +135,7 @@ impl Setting {
         let (groups, oscillator) = self.with_groups()?;
         let model = match self.is_of_letter() {
             true => Linear::Letter(groups),
-            false => Linear::General(Box::new(self.loop_around(groups, &oscillator).system())),
+            false => Linear::General(Box::new(self.loop_around(&oscillator)?.system())),
         };
         Ok((model, oscillator.time_unit()))
     }

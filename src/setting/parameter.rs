@@ -169,6 +169,14 @@ const LAG: Row = Row {
     ..ROW
 };
 
+/// A dashpot.
+const DASHPOT: Row = Row {
+    dimension: [1, -1, 1],
+    range: Range::NotNegative,
+    default: Some(0.0),
+    ..ROW
+};
+
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
@@ -303,6 +311,30 @@ catalogue! {
             }),
             page: Some(Page::new([0.1, 10.0], [0.2, 5.0]).folded(Folded::Model)),
             ..ROW
+        };
+        /// c, the dashpot beside the spring.
+        Damping = Row {
+            name: "damping",
+            symbol: "c",
+            long_name: "damping by the dashpot beside the spring",
+            flag: Some(Flag {
+                value: "C",
+                help: "c, dashpot beside the spring, mass/time [default: 0]",
+            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Model)),
+            ..DASHPOT
+        };
+        /// c_g, the dashpot to the ground.
+        Viscous = Row {
+            name: "viscous",
+            symbol: "c_g",
+            long_name: "viscous friction by the dashpot to the ground",
+            flag: Some(Flag {
+                value: "C",
+                help: "c_g, dashpot to the ground, whatever the load, mass/time [default: 0]",
+            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Model)),
+            ..DASHPOT
         };
         /// R, the memory of the feedback.
         Memory = Row {
@@ -640,6 +672,9 @@ impl Parameter {
         Self::SensorLag,
     ];
 
+    /// The dashpots beside the spring and to the ground.
+    pub(crate) const DASHPOTS: [Self; 2] = [Self::Damping, Self::Viscous];
+
     /// The lags of load, velocity and sensor.
     pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
 
@@ -653,13 +688,11 @@ impl Parameter {
         }
     }
 
-    /// True for [`Parameter::BEYOND_LETTER`].
+    /// True for what is absent and not mentioned at 0, its default: [`Parameter::BEYOND_LETTER`]
+    /// and dashpots.
     #[must_use]
-    pub const fn beyond_letter(self) -> bool {
-        matches!(
-            self,
-            Self::Memory | Self::Latency | Self::LoadLag | Self::VelocityLag | Self::SensorLag
-        )
+    pub(crate) fn absent_at_zero(self) -> bool {
+        Self::DASHPOTS.contains(&self) || Self::BEYOND_LETTER.contains(&self)
     }
 
     /// True for the parameters of the start of a motion.

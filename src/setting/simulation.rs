@@ -23,6 +23,8 @@ pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// The parameters that motions do not support.
 pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
+    Parameter::Damping,
+    Parameter::Viscous,
     Parameter::LoadLag,
     Parameter::VelocityLag,
     Parameter::SensorLag,

@@ -11,7 +11,7 @@ use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
 use super::system::{Evaluation, SystemModel};
 use crate::linear::general::System;
-use crate::model::{Control, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
+use crate::model::{Dashpots, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
 
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -227,7 +227,7 @@ impl Setting {
             Subject::File(_) => self.others().contains(&parameter),
         };
         let value = self.get(parameter);
-        taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
+        taken && !value.is_nan() && !(parameter.absent_at_zero() && value == 0.0)
     }
 
     /// The first of these parameters with which the setting goes beyond the letter's own system.
@@ -369,13 +369,15 @@ impl Setting {
     /// The oscillator.
     ///
     /// # Errors
-    /// When mass, stiffness or load are not positive.
+    /// When mass, stiffness or load are not positive, or a dashpot is negative.
     pub fn oscillator(&self) -> Result<Oscillator, ModelError> {
+        let [damping, viscous] = Parameter::DASHPOTS.map(|dashpot| self.get(dashpot));
         Oscillator::new(
             self.get(Parameter::Mass),
             self.get(Parameter::Stiffness),
             self.get(Parameter::NormalLoad),
-        )
+        )?
+        .damped(Dashpots { damping, viscous })
     }
 
     /// Whether a delay is given but has no effect, because both gains are 0.
@@ -383,15 +385,5 @@ impl Setting {
     pub fn has_idle_delay(&self) -> bool {
         let idle = self.system().is_none() && !self.control().act();
         idle && self.get(Parameter::Tau) > 0.0
-    }
-
-    /// Both gains.
-    #[inline]
-    #[must_use]
-    pub fn control(&self) -> Control {
-        Control {
-            alpha_v: self.get(Parameter::AlphaV),
-            alpha_n: self.get(Parameter::AlphaN),
-        }
     }
 }

@@ -3,7 +3,7 @@
 use slipmap::setting::SweepSpec;
 use slipmap::sweep::Plan;
 
-pub(crate) const SWEEPS: [&str; 11] = [
+pub(crate) const SWEEPS: [&str; 12] = [
     "fields = [\"n_unstable\", \"abscissa\", \"delay_margin\"]\nboundaries = true\n\
      degree_of_stability = [0.05]\nbest = true\n[axes]\nmu_prime = [-0.1, -0.3]\n\
      alpha_v = [-1, -0.5, 0]\ntau = [0, 2, 4, 6]\n\
@@ -28,6 +28,9 @@ pub(crate) const SWEEPS: [&str; 11] = [
     "fields = [\"n_unstable\", \"delay_margin\", \"gain_margin_lower\"]\n[axes]\n\
      load_lag = [0.1, 0.3]\ntau = [1, 4]\n[fixed]\nmu_prime = -0.1\nalpha_n = -0.4\n\
      velocity_lag = 0.2\nsensor_lag = 0.1\n",
+    "fields = [\"n_unstable\", \"delay_margin\", \"d_abscissa_d_alpha_v\"]\nboundaries = true\n\
+     best = true\n[axes]\nalpha_v = [-0.6, -0.3]\ndamping = [0.0, 0.2]\ntau = [1, 4]\n\
+     [fixed]\nmu_prime = -0.6\nviscous = 0.1\n",
     "fields = [\"n_unstable\", \"stiffness_ratio\", \"essential_abscissa\"]\n[axes]\n\
      v0 = [0.05, 0.2]\ntau = [1, 4]\n[fixed]\nalpha_v = -0.3\n[friction]\n\
      law = \"rate-and-state\"\nmu0 = 0.6\nv_star = 0.1\ndirect_effect = 0.02\n\

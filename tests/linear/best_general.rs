@@ -10,7 +10,7 @@ use serde_json::Value;
 use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
 use slipmap::linear::general::{Polynomial, System};
 use slipmap::model::stop::Stop;
-use slipmap::model::{Channel, Groups};
+use slipmap::model::{Channel, Dashpots, Groups};
 use slipmap::store::MapFile;
 
 /// The letter's own system is searched by its closed form and as any other: the same regions, the
@@ -25,6 +25,7 @@ fn the_letter_by_both_ways() {
         (0.2, SearchedGain::Load),
     ] {
         let family = Letter {
+            dashpots: Dashpots::default(),
             fixed: Groups::new(b, 0.0, 0.0),
             gain,
         };

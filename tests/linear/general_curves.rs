@@ -188,7 +188,7 @@ fn the_letters_curves() {
                 false => Groups::new(b, -0.1, gain),
             };
             let (p, breakpoints) = match velocity {
-                true => (-1.6..=0.4, velocity_gain_breakpoints(b, 0.1)),
+                true => (-1.6..=0.4, velocity_gain_breakpoints(b, 0.1, 0.0)),
                 false => (-5.0..=1.0, load_gain_breakpoints(b, -0.1)),
             };
             let window = Window { p, q: 0.5..=12.0 };

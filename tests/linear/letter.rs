@@ -19,7 +19,7 @@ fn fine(from: f64, to: f64, points: u32) -> impl Iterator<Item = f64> {
 /// "it disappears": the exact limit, confirmed by maps on both sides, very near to it.
 #[test]
 fn velocity_control_ends_at_the_tangency() {
-    let end = LobeControl::Velocity.lobe_end(0);
+    let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
     assert!((end.b - -0.725_635_939_603).abs() < 1e-9);
     // Beside the limit the lobe is a sliver at the fold: look there finely, and everywhere
     // coarsely.
@@ -53,7 +53,7 @@ fn velocity_control_outlives_the_letters_limit() {
 #[test]
 fn further_velocity_lobes_end_at_their_tangencies() {
     for (lobe, expected) in [(1, -0.369_620_351_789), (2, -0.240_297_356_210)] {
-        let end = LobeControl::Velocity.lobe_end(lobe);
+        let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(lobe);
         assert!((end.b - expected).abs() < 1e-9);
         let stable_near = |b: f64| {
             let fold = 0.5 * b - b * b * b / 8.0;

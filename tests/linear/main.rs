@@ -33,6 +33,8 @@ mod bounded_cells;
 #[cfg(feature = "sweep")]
 mod chains;
 mod counts;
+#[cfg(feature = "sweep")]
+mod damping;
 mod general;
 mod general_curves;
 #[cfg(feature = "sweep")]

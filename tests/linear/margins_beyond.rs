@@ -9,9 +9,10 @@ use num_complex::Complex64;
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::general::{DelayLine, Polynomial, RightOf, RootCounter, System};
 use slipmap::linear::margins::{self, Beyond, Case, MarginSearch, Radius, Setting, SlidingLaw};
-use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator};
+use slipmap::model::{Channel, Control, Dashpots, FrictionLaw, Groups, Lags, Oscillator};
 
 const NOTHING: Beyond = Beyond {
+    damping: 0.0,
     channel: Channel {
         memory: 0.0,
         latency: 0.0,
@@ -34,7 +35,10 @@ fn roots(Setting { groups, tau, decay }: Setting, beyond: &Beyond) -> Option<u64
         &of(&[1.0, b, 1.0]),
         &times(&load, &times(&velocity, &sensor)),
     );
-    let gain = times(&of(&[a_n]), &velocity).plus(&times(&of(&[a_v * b, a_v]), &load), 1.0);
+    // With a dashpot a_n has lost d a_v, which passes with the velocity.
+    let d = beyond.damping;
+    let moving = of(&[a_v * (b - d), a_v]);
+    let gain = times(&of(&[a_n + d * a_v]), &velocity).plus(&times(&moving, &load), 1.0);
     let system = System::feedback(open, gain, beyond.channel);
     if b == 0.0 && decay == 0.0 {
         // Without damping P has zeros on the axis, which the count along it does not like.
@@ -53,7 +57,7 @@ fn stable(setting: Setting, beyond: &Beyond) -> bool {
     roots(setting, beyond) == Some(0)
 }
 
-/// What feedback has, by number: memory, latency, lags, or all of them.
+/// What feedback has, by number: memory, latency, lags and a damped spring, or all of them.
 fn beyond(chance: &mut Chance, kind: usize) -> Beyond {
     let memory = chance.between(-0.9, 0.9);
     let latency = chance.between(0.0, 1.0);
@@ -70,13 +74,18 @@ fn beyond(chance: &mut Chance, kind: usize) -> Beyond {
     match kind % 5 {
         0 => through(memory, 0.0),
         1 => through(0.0, latency),
-        2 => Beyond { lags, ..NOTHING },
+        2 => Beyond {
+            lags,
+            damping: 0.3 * memory.abs(),
+            ..NOTHING
+        },
         3 => through(memory, 0.3 * latency),
         _ => Beyond {
             lags: Lags {
                 sensor: 0.0,
                 ..lags
             },
+            damping: 0.2 * latency,
             ..through(0.5 * memory, 0.3 * latency)
         },
     }
@@ -293,8 +302,9 @@ fn negative_loop(setting: Setting, beyond: &Beyond, omega: f64) -> Complex64 {
     let delayed = (-lambda * tau).exp();
     let late = (-lambda * beyond.channel.latency).exp();
     let lag = |time: f64| 1.0 + time * lambda;
-    let load = a_n / lag(beyond.lags.load);
-    let velocity = a_v * (b + lambda) / lag(beyond.lags.velocity);
+    let d = beyond.damping;
+    let load = (a_n + d * a_v) / lag(beyond.lags.load);
+    let velocity = a_v * (b - d + lambda) / lag(beyond.lags.velocity);
     let acting = (load + velocity) / lag(beyond.lags.sensor) * late * (1.0 - delayed);
     acting / ((lambda * (lambda + b) + 1.0) * (1.0 - beyond.channel.memory * delayed))
 }
@@ -487,13 +497,14 @@ fn every_setting_of_a_box_is_stable_and_not_far_beyond_one_is_not() {
         let Setting { groups, tau, decay } = setting;
         let Groups { b, a_v, a_n } = groups;
         let start = Instant::now();
-        let found = margins::radius(&Case::beyond(setting, beyond));
+        let still = beyond.damping;
+        let found = margins::radius_up_to(&Case::beyond(setting, beyond), 1.0, still);
         longest = longest.max(start.elapsed());
         loose += u32::from(!found.tight);
         let changed = |[gain, delay, slope]: [f64; 3]| {
             let k = 1.0 + gain;
             let changed = Setting {
-                groups: Groups::new(b * (1.0 + slope), k * a_v, k * a_n),
+                groups: Groups::new((b - still) * (1.0 + slope) + still, k * a_v, k * a_n),
                 tau: tau * (1.0 + delay),
                 decay,
             };
@@ -505,10 +516,20 @@ fn every_setting_of_a_box_is_stable_and_not_far_beyond_one_is_not() {
     assert!(loose <= 4, "{loose}");
 }
 
+/// A block without dashpots, and one with both.
+fn oscillators() -> [Oscillator; 2] {
+    let undamped = Oscillator::new(1.0, 1.0, 1.0).unwrap();
+    let dashpots = Dashpots {
+        damping: 0.1,
+        viscous: 0.05,
+    };
+    [undamped, undamped.damped(dashpots).unwrap()]
+}
+
 #[test]
 fn a_friction_law_leads_from_one_velocity_to_another() {
     let mut chance = Chance(3);
-    let oscillator = Oscillator::new(1.0, 1.0, 1.0).unwrap();
+    let [undamped, damped] = oscillators();
     let laws = [
         FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
         FrictionLaw::stribeck(0.4, 0.5, 1.0).unwrap(),
@@ -522,12 +543,16 @@ fn a_friction_law_leads_from_one_velocity_to_another() {
             _ => (chance.between(-0.5, 0.2), chance.between(-8.0, 2.0)),
         };
         let control = Control { alpha_v, alpha_n };
+        let oscillator = if tried % 4 == 0 { &undamped } else { &damped };
         let sliding = SlidingLaw {
             law,
-            oscillator: &oscillator,
+            oscillator,
             control,
         };
-        let beyond = beyond(&mut chance, tried);
+        let beyond = Beyond {
+            damping: oscillator.dashpot_ratios().damping,
+            ..beyond(&mut chance, tried)
+        };
         let (v0, tau) = (chance.between(0.1, 0.9), chance.between(0.1, 6.0));
         let at = |v: f64| {
             let setting = Setting {

@@ -5,10 +5,11 @@ use slipmap::linear::best::{
     Best, Letter, Robust, Search, SearchedGain, best, robust, worst_around,
 };
 use slipmap::linear::spectrum::RootFinder;
-use slipmap::model::Groups;
 use slipmap::model::stop::Stop;
+use slipmap::model::{Dashpots, Groups};
 
-/// Problems of load and velocity control with slopes and spreads of their own.
+/// Problems of load and velocity control with slopes and spreads of their own, every third one with
+/// dashpots.
 fn problems(number: u32) -> impl Iterator<Item = (Search<Letter>, f64)> {
     (0..number).map(move |i| {
         let part = f64::from(i) / f64::from(number);
@@ -24,6 +25,13 @@ fn problems(number: u32) -> impl Iterator<Item = (Search<Letter>, f64)> {
         };
         let search = Search {
             family: Letter {
+                dashpots: match i % 3 {
+                    1 => Dashpots {
+                        damping: 0.1,
+                        viscous: 0.04,
+                    },
+                    _ => Dashpots::default(),
+                },
                 fixed: Groups::new(b, 0.0, 0.0),
                 gain,
             },
@@ -40,7 +48,8 @@ impl Abscissas {
     fn at(&mut self, search: &Search<Letter>, (gain, tau): (f64, f64), changes: [f64; 3]) -> f64 {
         let [k, delay, slope] = changes.map(|d| 1.0 + d);
         let Groups { b, a_v, a_n } = search.family.groups(gain);
-        let groups = Groups::new(b * slope, a_v * k, a_n * k);
+        let still = search.family.dashpots.sum();
+        let groups = Groups::new((b - still) * slope + still, a_v * k, a_n * k);
         let roots = self.0.rightmost(groups, tau * delay, 1, f64::NEG_INFINITY);
         roots.unwrap()[0].lambda.re
     }

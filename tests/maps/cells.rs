@@ -631,7 +631,7 @@ fn cells(text: &str, mut visit: impl FnMut(&slipmap::setting::Setting, u16)) {
 /// of it, none on the other.
 #[test]
 fn velocity_control_ends_in_the_map_where_the_tangency_says() {
-    let end = slipmap::linear::lobes::LobeControl::Velocity.lobe_end(0);
+    let end = slipmap::linear::lobes::LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
     for (distance, width) in [(0.02, 0.02), (0.005, 0.004), (0.001, 0.0008)] {
         let (inside, outside) = (end.b + distance, end.b - distance);
         let text = format!(

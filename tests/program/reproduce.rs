@@ -182,7 +182,7 @@ fn every_verdict_with_its_value() {
 /// side.
 #[test]
 fn the_limit_stands_beside_the_letters() {
-    let end = LobeControl::Velocity.lobe_end(0).b;
+    let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(0).b;
     assert!((end - -0.725_635_939_603).abs() < 1e-12);
     let values = claims()["velocity_limit"]["values"].as_array().unwrap();
     assert_eq!(values[0]["value"], end);

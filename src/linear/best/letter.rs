@@ -9,8 +9,8 @@ use crate::linear::characteristic::Jet;
 use crate::linear::equation::Equation;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::linear::sensitivity::Sensitivity;
-use crate::model::Groups;
 use crate::model::stop::Stop;
+use crate::model::{Control, Dashpots, Groups, Oscillator, SlidingPoint};
 
 /// The gain that is searched; the other one stays as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,17 +24,35 @@ pub enum SearchedGain {
 /// The letter's own system; all numbers dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Letter {
-    /// b and the gain that stays fixed; the searched gain in it is not looked at.
+    /// b, with both dashpots, and the gain that stays fixed, a_n without what a dashpot takes off
+    /// it; the searched gain in it is not looked at.
     pub fixed: Groups,
+    /// d and g.
+    pub dashpots: Dashpots,
     /// Which gain is searched.
     pub gain: SearchedGain,
 }
 
 impl Letter {
+    /// The family of a block on its spring.
+    #[must_use]
+    pub fn of(
+        oscillator: &Oscillator,
+        sliding: SlidingPoint,
+        control: Control,
+        gain: SearchedGain,
+    ) -> Self {
+        Self {
+            fixed: oscillator.groups_without_coupling(sliding, control),
+            dashpots: oscillator.dashpot_ratios(),
+            gain,
+        }
+    }
+
     /// The groups at a value of the searched gain.
     #[must_use]
     pub fn groups(&self, gain: f64) -> Groups {
-        match self.gain {
+        let groups = match self.gain {
             SearchedGain::Velocity => Groups {
                 a_v: gain,
                 ..self.fixed
@@ -43,6 +61,27 @@ impl Letter {
                 a_n: gain,
                 ..self.fixed
             },
+        };
+        groups.coupled(self.dashpots.damping)
+    }
+
+    /// The part of b that is the slope of friction.
+    #[must_use]
+    pub(super) fn slope(&self) -> f64 {
+        self.fixed.b - self.dashpots.sum()
+    }
+
+    /// The gains at which crossings change their number; see [`crate::linear::gains`].
+    #[must_use]
+    pub fn changes_of_crossings(&self) -> Vec<f64> {
+        let Groups { b, a_v, a_n } = self.fixed;
+        let damping = self.dashpots.damping;
+        match self.gain {
+            SearchedGain::Velocity => velocity_gain_breakpoints(b, a_n, damping),
+            SearchedGain::Load => {
+                let points = load_gain_breakpoints(b, a_v).into_iter();
+                points.map(|a_n| a_n + damping * a_v).collect()
+            }
         }
     }
 }
@@ -75,7 +114,7 @@ impl Family for Letter {
             -jet.delayed * (groups.a_v * lambda + jet.feedback - jet.feedback * lambda * tau);
         let (gain, slope_gain) = match self.gain {
             SearchedGain::Velocity => {
-                let size = groups.b + lambda;
+                let size = groups.b - self.dashpots.damping + lambda;
                 (-size * jet.difference, -jet.difference - size * memory)
             }
             SearchedGain::Load => (-jet.difference, -memory),
@@ -90,6 +129,7 @@ impl Family for Letter {
 
     fn gradient(&self, place: Place, lambda: Complex64) -> Option<[f64; 2]> {
         let by = Sensitivity::of(self.groups(place.gain), place.tau, lambda);
+        let by = by.coupled(self.dashpots.damping);
         let by_gain = match self.gain {
             SearchedGain::Velocity => by.a_v,
             SearchedGain::Load => by.a_n,
@@ -97,14 +137,9 @@ impl Family for Letter {
         Some([by_gain.re, by.tau.re])
     }
 
-    /// The gains at which crossings change their number, and 0, where control may vanish; see
-    /// [`crate::linear::gains`].
+    /// The gains at which crossings change their number, and 0, where control may vanish.
     fn breakpoints(&self, _gains: &[f64], _stop: &Stop) -> Vec<f64> {
-        let Groups { b, a_v, a_n } = self.fixed;
-        let mut points = match self.gain {
-            SearchedGain::Velocity => velocity_gain_breakpoints(b, a_n),
-            SearchedGain::Load => load_gain_breakpoints(b, a_v),
-        };
+        let mut points = self.changes_of_crossings();
         points.push(0.0);
         points.retain(|p| p.is_finite());
         points
@@ -138,6 +173,10 @@ mod tests {
         for gain in [SearchedGain::Velocity, SearchedGain::Load] {
             let family = Letter {
                 fixed: Groups::new(-0.4, 0.3, -0.2),
+                dashpots: Dashpots {
+                    damping: 0.15,
+                    viscous: 0.05,
+                },
                 gain,
             };
             let (place, lambda) = (

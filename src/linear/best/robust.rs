@@ -88,8 +88,10 @@ impl<'s> Worst<'s> {
 
     fn changed(&self, place: Place, changes: Changes) -> (Groups, f64) {
         let [k, delay, slope] = changes.map(|d| 1.0 + self.spread * d);
-        let Groups { b, a_v, a_n } = self.search.family.groups(place.gain);
-        (Groups::new(b * slope, a_v * k, a_n * k), place.tau * delay)
+        let Groups { a_v, a_n, .. } = self.search.family.groups(place.gain);
+        let family = &self.search.family;
+        let b = family.slope() * slope + family.dashpots.sum();
+        (Groups::new(b, a_v * k, a_n * k), place.tau * delay)
     }
 
     /// Goes down from a start.
@@ -109,7 +111,7 @@ impl<'s> Worst<'s> {
                 tau: place.tau,
                 decay: -line,
             };
-            let radius = radius_up_to(&setting, self.spread);
+            let radius = radius_up_to(&setting, self.spread, self.search.family.dashpots.sum());
             if radius.proved >= self.spread {
                 return Ok(Some(line));
             }

@@ -2,7 +2,7 @@ use super::*;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::characteristic::Jet;
 use crate::linear::lobes::LobeControl;
-use crate::model::Groups;
+use crate::model::{Dashpots, Groups};
 use num_complex::Complex64;
 
 const SLOPES: [f64; 5] = [-0.05, -0.1, -0.3, -0.5, -0.7];
@@ -10,6 +10,7 @@ const SLOPES: [f64; 5] = [-0.05, -0.1, -0.3, -0.5, -0.7];
 fn velocity(b: f64) -> Search<Letter> {
     Search {
         family: Letter {
+            dashpots: Dashpots::default(),
             fixed: Groups::new(b, 0.0, 0.0),
             gain: SearchedGain::Velocity,
         },
@@ -232,7 +233,7 @@ fn lobes_relax_more_slowly_at_larger_delays() {
 /// Lobes of velocity control up to where they end, however small they are there.
 #[test]
 fn tiny_lobes_are_found() {
-    let end = LobeControl::Velocity.lobe_end(0);
+    let end = LobeControl::Velocity { damping: 0.0 }.lobe_end(0);
     for by in [0.0256, 1e-3, 1e-5] {
         let search = velocity(end.b + by);
         let found = best(&search, &Stop::default());
@@ -360,7 +361,11 @@ fn the_other_gain_may_act_too() {
         (Groups::new(-0.2, 0.5, 0.0), SearchedGain::Load),
     ] {
         let search = Search {
-            family: Letter { fixed, gain },
+            family: Letter {
+                fixed,
+                dashpots: Dashpots::default(),
+                gain,
+            },
             gains: (-3.0, 3.0),
             delays: (0.0, 15.0),
         };
@@ -378,6 +383,7 @@ fn the_other_gain_may_act_too() {
 fn a_valley_of_double_roots_is_followed_to_the_edge() {
     let search = Search {
         family: Letter {
+            dashpots: Dashpots::default(),
             fixed: Groups::new(0.173_932_752, -0.915_096_374, 0.0),
             gain: SearchedGain::Load,
         },
@@ -516,6 +522,7 @@ fn by_chance(number: u64) -> Search<Letter> {
     };
     Search {
         family: Letter {
+            dashpots: Dashpots::default(),
             fixed: match gain {
                 SearchedGain::Velocity => Groups::new(b, 0.0, other),
                 SearchedGain::Load => Groups::new(b, other, 0.0),
@@ -547,6 +554,7 @@ fn optima_of_boxes_by_chance_agree_with_nested_searches() {
 fn a_place_at_rest_is_no_optimum_where_the_valley_falls_from_it() {
     let search = Search {
         family: Letter {
+            dashpots: Dashpots::default(),
             fixed: Groups::new(-1.085_950_199_932_85, -0.562_008_325_737_243_9, 0.0),
             gain: SearchedGain::Load,
         },

@@ -10,8 +10,10 @@
 //!
 //! ```text
 //! D = B(1 − R e^(−λτ)) − k A (1 − e^(−λτ)) e^(−λδ),   B = (λ² + bλ + 1) L_a L_v L_s
-//! A = a_n L_v + a_v (b + λ) L_a                                                            (2)
+//! A = (a_n + d a_v) L_v + a_v (b − d + λ) L_a                                              (2)
 //! ```
+//!
+//! d being the dashpot beside the spring, which a_n feels.
 
 use num_complex::Complex64;
 
@@ -82,8 +84,13 @@ impl<const V: usize> Point<V> {
         for time in beyond.lags.times() {
             open = passing(open, time);
         }
-        let load = passing(self.a_n, beyond.lags.velocity);
-        let velocity = passing((b + lambda).scaled(self.a_v), beyond.lags.load);
+        let mut shares = [self.a_n, (b + lambda).scaled(self.a_v)];
+        if beyond.damping != 0.0 {
+            let coupled = Affine::constant((beyond.damping * self.a_v).into());
+            shares = [shares[0] + coupled, shares[1] - coupled];
+        }
+        let load = passing(shares[0], beyond.lags.velocity);
+        let velocity = passing(shares[1], beyond.lags.load);
         let feedback = factor * (load + velocity);
         let fixed = || match beyond.channel.latency {
             0.0 => None,
@@ -210,13 +217,14 @@ impl SlidingLaw<'_> {
         let middle = 0.5 * (between.0 + between.1);
         let half = 0.5 * (between.1 - between.0);
         let at = self.groups(middle);
-        // The groups are linear in μ_K and μ_K′: these are their units.
-        let unit = |mu_k, mu_prime| {
-            let sliding = SlidingPoint { mu_k, mu_prime };
-            self.oscillator.groups(sliding, self.control)
-        };
+        // The groups grow evenly with μ_K and μ_K′.
+        let unit = self.oscillator.groups_per_parameter(SlidingPoint {
+            mu_k: self.control.alpha_n,
+            mu_prime: 1.0,
+        });
+        let still = self.oscillator.dashpot_ratios().sum();
         let within = |unit: f64, (low, high): (f64, f64)| {
-            let mut number = Affine::constant((0.5 * unit * (low + high)).into());
+            let mut number = Affine::constant((0.5 * unit * (low + high) + still).into());
             let half = 0.5 * unit.abs() * (high - low) * (1.0 + 1e-12);
             match jump {
                 // Real, which the rest is not known to be.
@@ -242,12 +250,11 @@ impl SlidingLaw<'_> {
             return None;
         }
         let bends = self.law.curvatures_between(between.0, between.1);
-        let slope = unit(0.0, 1.0).b;
         let b = match bends.0.is_finite() {
-            true => along(at.b, slope, bends),
+            true => along(at.b, unit.b, bends),
             // The slope jumps: all that is known is its range.
-            false => within(slope, allowed),
+            false => within(unit.b, allowed),
         };
-        Some([b, along(at.a_n, unit(1.0, 0.0).a_n, slopes)])
+        Some([b, along(at.a_n, unit.a_n, slopes)])
     }
 }

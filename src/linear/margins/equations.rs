@@ -104,14 +104,18 @@ pub trait OnLine: Clone {
 }
 
 /// The parts of A B* on the imaginary axis that a_n and a_v are factors of, without lags. The
-/// second is (b + λ)(λ² + bλ + 1)* = b + (1 − b²)λ + λ³: its highest real part vanishes, whatever
-/// rounding would leave of it.
-pub(super) fn loop_parts(b: f64) -> [Polynomial; 2] {
-    let square = exactly(b).times(exactly(b));
+/// second is (c + λ)(λ² + bλ + 1)* = c + (1 − bc)λ − dλ² + λ³, c = b − d: without the dashpot d its
+/// highest real part vanishes, whatever rounding would leave of it.
+pub(super) fn loop_parts(b: f64, damping: f64) -> [Polynomial; 2] {
+    let moving = match damping {
+        0.0 => exactly(b),
+        damping => exactly(b).minus(exactly(damping)),
+    };
+    let square = exactly(b).times(moving);
     let velocity = Polynomial::of(3, |k| match k {
-        0 => exactly(b),
+        0 => moving,
         1 => exactly(1.0).minus(square),
-        2 => exactly(0.0),
+        2 => exactly(-damping),
         _ => exactly(1.0),
     });
     [conjugate(&polynomial(&open_loop_coefficients(b))), velocity]
@@ -184,7 +188,7 @@ impl OnLine for Setting {
     fn gain(&self) -> Sum {
         if self.decay == 0.0 {
             let Groups { b, a_v, a_n } = self.groups;
-            let [load, velocity] = loop_parts(b);
+            let [load, velocity] = loop_parts(b, 0.0);
             let mut terms = Terms::new(Part::Real);
             terms.add(&load, exactly(a_n), 0.5 * self.tau);
             terms.add(&velocity, exactly(a_v), 0.5 * self.tau);

@@ -271,15 +271,16 @@ impl MarginSearch {
 /// The stability radius in gain, delay and slope.
 #[must_use]
 pub fn radius(of: &impl AsCase) -> Radius {
-    radius_up_to(of, 1.0)
+    radius_up_to(of, 1.0, 0.0)
 }
 
-/// The stability radius in gain, delay and slope, or `most` < 1 where it is larger.
+/// The stability radius in gain, delay and slope, or `most` < 1 where it is larger. `still` is
+/// d + g, what dashpots add to b: it does not change with the slope of friction.
 #[must_use]
-pub fn radius_up_to(of: &impl AsCase, most: f64) -> Radius {
+pub fn radius_up_to(of: &impl AsCase, most: f64, still: f64) -> Radius {
     let around = Surroundings {
         case: of.case(),
-        third: Third::Slope,
+        third: Third::Slope(still),
     };
     around.radius(most)
 }

@@ -12,7 +12,8 @@ pub type Changes = [f64; 3];
 /// What the third parameter is.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Third<'a> {
-    Slope,
+    /// The slope of friction. Of b so much is not that slope, but dashpots.
+    Slope(f64),
     /// The sliding velocity, and its law.
     Velocity(f64, SlidingLaw<'a>),
 }
@@ -48,8 +49,8 @@ impl<L: OnLine> Surroundings<'_, L> {
     pub(super) fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
         let Setting { groups, tau, .. } = self.case.setting;
         let Groups { b, a_n, .. } = match self.third {
-            Third::Slope => Groups {
-                b: groups.b * (1.0 + third),
+            Third::Slope(still) => Groups {
+                b: (groups.b - still) * (1.0 + third) + still,
                 ..groups
             },
             Third::Velocity(..) if third == 0.0 => groups,
@@ -69,7 +70,7 @@ impl<L: OnLine> Surroundings<'_, L> {
     pub(super) fn fixed(&self) -> [bool; 3] {
         let Setting { groups, tau, .. } = self.case.setting;
         let third = match self.third {
-            Third::Slope => groups.b == 0.0,
+            Third::Slope(still) => groups.b == still,
             Third::Velocity(v0, _) => v0 == 0.0,
         };
         [groups.uncontrolled(), tau == 0.0, third]
@@ -81,10 +82,14 @@ impl<L: OnLine> Surroundings<'_, L> {
         let from_one = |(a, b): (f64, f64)| (1.0 + a, 1.0 + b);
         let factor = Affine::between(from_one(gain), 1);
         let (b, a_n) = match self.third {
-            Third::Slope => (
-                Affine::between(from_one(third), 3).scaled(groups.b),
-                Affine::constant(groups.a_n.into()),
-            ),
+            Third::Slope(still) => {
+                let slope = Affine::between(from_one(third), 3).scaled(groups.b - still);
+                let b = match still {
+                    0.0 => slope,
+                    still => slope + Affine::constant(still.into()),
+                };
+                (b, Affine::constant(groups.a_n.into()))
+            }
             Third::Velocity(v0, law) => {
                 let (low, high) = from_one(third);
                 let slope = Slope {
@@ -121,7 +126,10 @@ impl<L: OnLine> Surroundings<'_, L> {
     pub(super) fn highest(&self, most: f64) -> f64 {
         let Setting { groups, tau, .. } = self.case.setting;
         let (b, a_n) = match self.third {
-            Third::Slope => (groups.b * (1.0 + most), groups.a_n),
+            Third::Slope(still) => {
+                let reach = (groups.b - still).abs() * (1.0 + most) + still;
+                (reach, groups.a_n)
+            }
             Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
         };
         self.case.on_line.highest(UpTo {

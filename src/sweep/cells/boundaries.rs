@@ -6,12 +6,13 @@
 
 use super::any_plane;
 use crate::linear::Crossings;
+use crate::linear::best::{Letter, SearchedGain};
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
-use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::law::{FrictionLaw, Kind};
 use crate::model::stop::Stop;
 use crate::model::{Groups, ModelError};
+use crate::setting::best_plane::searched_gain;
 use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 use crate::sweep::plan::Plan;
@@ -134,10 +135,9 @@ fn trace_window(
         for part in split(window, &jumps(setting, parameter)?) {
             let more = match sigma {
                 0.0 => {
-                    let (start, unit) = valid_groups_at(*part.p.start());
                     let scanned =
                         || scan_breakpoints(|p| valid_groups_at(p).0, &part.p, SCAN_STEPS);
-                    let breakpoints = breakpoints(setting, parameter, start, unit, scanned)?;
+                    let breakpoints = breakpoints(setting, parameter, scanned)?;
                     trace(crossings_at, &breakpoints, &part, stop)
                 }
                 _ => decay::trace(valid_groups_at, sigma, &part, stop),
@@ -153,28 +153,25 @@ fn trace_window(
     std::iter::once(0.0).chain(degrees).map(traced).collect()
 }
 
-/// Values of `parameter` at which the number of crossing curves changes. `start` has the groups at
-/// one value. The values are `scanned` for where they have no closed form.
+/// Values of `parameter` at which the number of crossing curves changes. They are `scanned` for
+/// where they have no closed form.
 fn breakpoints(
     setting: &Setting,
     parameter: Parameter,
-    start: Groups,
-    time_unit: f64,
     scanned: impl Fn() -> Vec<f64>,
 ) -> Result<Vec<f64>, ModelError> {
-    Ok(match parameter {
-        Parameter::AlphaV => velocity_gain_breakpoints(start.b, start.a_n)
-            .into_iter()
-            .map(|a_v| a_v / time_unit)
-            .collect(),
-        Parameter::AlphaN => {
-            let to_physical = setting.oscillator()?.stiffness() / setting.sliding_point()?.mu_k;
-            load_gain_breakpoints(start.b, start.a_v)
-                .into_iter()
-                .map(|a_n| a_n * to_physical)
-                .collect()
+    let Some(gain) = searched_gain(parameter) else {
+        return Ok(scanned());
+    };
+    let (oscillator, sliding) = (setting.oscillator()?, setting.sliding_point()?);
+    let family = Letter::of(&oscillator, sliding, setting.control(), gain);
+    let points = family.changes_of_crossings().into_iter();
+    Ok(match gain {
+        SearchedGain::Velocity => points.map(|a_v| a_v / oscillator.time_unit()).collect(),
+        SearchedGain::Load => {
+            let to_physical = oscillator.stiffness() / sliding.mu_k;
+            points.map(|a_n| a_n * to_physical).collect()
         }
-        _ => scanned(),
     })
 }
 

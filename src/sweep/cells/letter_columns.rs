@@ -147,9 +147,10 @@ impl LetterColumns {
             true => &mut buffers.status[places.at..places.at + len],
             false => &mut self.status[..len],
         };
+        let damping = line.lines.damping();
         let of_roots = Line {
             equation: line.groups,
-            sensitivity: |tau, lambda| Sensitivity::of(line.groups, tau, lambda),
+            sensitivity: |tau, lambda| Sensitivity::of(line.groups, tau, lambda).coupled(damping),
             time_unit: line.time_unit,
             unit: 1.0,
             per_parameter: line.lines.groups_per_parameter(),

@@ -1,7 +1,7 @@
 //! The linear models of lines of cells, one line after the other.
 
 use crate::linear::line::Linear;
-use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::model::{Groups, ModelError, Oscillator, SlidingPoint};
 use crate::setting::no_answer::NoAnswer;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
@@ -84,22 +84,19 @@ impl<'p> Lines<'p> {
     }
 
     /// The derivative of each group with respect to its parameter on the current line: b per μ_K′,
-    /// a_v per α_v, a_n per α_N.
+    /// a_v per α_v, a_n per α_N; what a dashpot takes off a_n is left aside.
     pub(super) fn groups_per_parameter(&self) -> Groups {
         match &self.uncontrolled {
-            Some(Ok((oscillator, sliding))) => {
-                // Every group is proportional to its parameter.
-                let one_each = SlidingPoint {
-                    mu_prime: 1.0,
-                    ..*sliding
-                };
-                let control = Control {
-                    alpha_v: 1.0,
-                    alpha_n: 1.0,
-                };
-                oscillator.groups(one_each, control)
-            }
+            Some(Ok((oscillator, sliding))) => oscillator.groups_per_parameter(*sliding),
             _ => Groups::new(f64::NAN, f64::NAN, f64::NAN),
+        }
+    }
+
+    /// d, the dashpot beside the spring of the current line, dimensionless.
+    pub(super) fn damping(&self) -> f64 {
+        match &self.uncontrolled {
+            Some(Ok((oscillator, _))) => oscillator.dashpot_ratios().damping,
+            _ => 0.0,
         }
     }
 }

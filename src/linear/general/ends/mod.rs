@@ -1,7 +1,7 @@
 //! Where lobes of feedback with memory and latency end: the slope b below which no delay is stable.
 //!
 //! ```text
-//! D = B (1 − R E) − g L e^(−λδ) (1 − E),   B = λ² + bλ + 1,   L = b + λ or 1                 (1)
+//! D = B (1 − R E) − g L e^(−λδ) (1 − E),   B = λ² + bλ + 1,   L = b − d + λ or 1             (1)
 //! ```
 //!
 //! A lobe shrinks to a point in one of two ways: a pair of roots on the axis is double there, D =
@@ -101,7 +101,8 @@ struct Problem {
 /// use slipmap::linear::lobes::LobeControl;
 ///
 /// // The latency with which velocity control reaches farthest.
-/// let end = lobe_end(LobeControl::Velocity, 0, 0.0, Latency::Best).expect("it is followed");
+/// let end = lobe_end(LobeControl::Velocity { damping: 0.0 }, 0, 0.0, Latency::Best)
+///     .expect("it is followed");
 /// assert!((end.b - -0.757_701_628_5).abs() < 1e-9);
 /// assert!((end.latency - 0.535_990_8).abs() < 1e-6);
 /// ```
@@ -249,7 +250,7 @@ impl Problem {
         let latency = self.latency.unwrap_or(y[3]);
         let lambda = Complex64::new(0.0, omega);
         let (shape, slope) = match self.control {
-            LobeControl::Velocity => (b + lambda, 1.0),
+            LobeControl::Velocity { damping } => (b - damping + lambda, 1.0),
             LobeControl::PositiveLoad => (Complex64::new(1.0, 0.0), 0.0),
         };
         let (late, difference) = (late(latency, lambda), one_minus_exp(-tau * lambda));
@@ -363,7 +364,7 @@ impl Problem {
     /// Whether no further root is unstable at `end`.
     fn alone(&self, end: &LobeEnd) -> bool {
         let shape = match self.control {
-            LobeControl::Velocity => [end.gain * end.b, end.gain],
+            LobeControl::Velocity { damping } => [end.gain * (end.b - damping), end.gain],
             LobeControl::PositiveLoad => [end.gain, 0.0],
         };
         let polynomials = [
@@ -388,7 +389,7 @@ mod tests {
     use crate::linear::general::DelayLine;
 
     fn velocity(memory: f64, latency: Latency) -> LobeEnd {
-        lobe_end(LobeControl::Velocity, 0, memory, latency).unwrap()
+        lobe_end(LobeControl::Velocity { damping: 0.0 }, 0, memory, latency).unwrap()
     }
 
     /// Ends that were found by other means.

@@ -8,7 +8,7 @@
 //! gains k:   Im[N M*] = 0,   k = |M|²/Re[N M*]                                              (1)
 //!            N M* = p A B* e^(−iωδ)[1 + Rq² − q e^(−iωτ) − Rq e^(iωτ)]                      (2)
 //! slope b:   D = D₀ + b D₁,   Im[D₀ D₁*] = 0,   b = −Re[D₀ D₁*]/|D₁|²                       (3)
-//!            D₀ = u(1 − R E) − w e^(−λδ)(1 − E),   u = (λ² + 1) L,   w = a_n L_v + a_v λ L_a
+//!            D₀ = u(1 − R E) − w e^(−λδ)(1 − E),   u = (λ² + 1) L,   w = a_n L_v + a_v (λ − d) L_a
 //!            D₁ = v(1 − R E) − y e^(−λδ)(1 − E),   v = λ L,          y = a_v L_a
 //! loop e^(iφ) N/M:   |N|² = |M|²,   φ = −arg(N/M)                                           (4)
 //! ```
@@ -86,10 +86,10 @@ impl Equations {
         if decay > 0.0 {
             return self.product(&self.gain, &self.open);
         }
-        let [load, velocity] = loop_parts(groups.b);
+        let [load, velocity] = loop_parts(groups.b, self.beyond.damping);
         let load = times(&load, &self.lags.velocity);
         let velocity = times(&velocity, &self.lags.load);
-        let both = Polynomial::ZERO.plus(&load, groups.a_n);
+        let both = Polynomial::ZERO.plus(&load, self.beyond.load_gain(groups));
         let both = both.plus(&velocity, groups.a_v);
         times(&both, &conjugate(&self.lags.all))
     }
@@ -111,13 +111,14 @@ impl Equations {
 
     /// u, v, w and y of (3).
     fn of_slope(&self) -> [Polynomial; 4] {
-        let Groups { a_v, a_n, .. } = self.setting.groups;
-        let y = Polynomial::ZERO.plus(&self.lags.load, a_v);
+        let groups = self.setting.groups;
+        let y = Polynomial::ZERO.plus(&self.lags.load, groups.a_v);
         let variable = Polynomial::variable();
+        let moving = polynomial(&[-self.beyond.damping, 1.0]);
         [
             times(&polynomial(&[1.0, 0.0, 1.0]), &self.lags.all),
             times(&variable, &self.lags.all),
-            times(&variable, &y).plus(&self.lags.velocity, a_n),
+            times(&moving, &y).plus(&self.lags.velocity, self.beyond.load_gain(groups)),
             y,
         ]
     }

@@ -1,7 +1,7 @@
 //! What feedback has beyond the letter's own, and which settings of it are stable.
 
 use crate::linear::MarginalTolerance;
-use crate::linear::feedback_loop::{FeedbackLoop, LagPolynomials};
+use crate::linear::feedback_loop::{FeedbackLoop, Friction, LagPolynomials};
 use crate::linear::general::{DelayLine, RightOf, RootCounter};
 use crate::model::{Channel, Groups, Lags};
 
@@ -12,6 +12,8 @@ pub struct Beyond {
     pub channel: Channel,
     /// Lags.
     pub lags: Lags,
+    /// d, the dashpot beside the spring.
+    pub damping: f64,
 }
 
 impl Beyond {
@@ -22,7 +24,20 @@ impl Beyond {
     /// The loop of these groups, (1) and (2) of `beyond`.
     #[must_use]
     pub(crate) fn of_groups(&self, groups: Groups) -> FeedbackLoop {
-        FeedbackLoop::of_letter(groups, self.channel, self.lags)
+        let Groups { b, a_v, .. } = groups;
+        let friction = Friction::of_slope(b, self.damping);
+        FeedbackLoop::new(
+            friction,
+            a_v,
+            self.load_gain(groups),
+            self.channel,
+            self.lags,
+        )
+    }
+
+    /// a_n before the dashpot takes d a_v off it.
+    pub(super) fn load_gain(&self, groups: Groups) -> f64 {
+        groups.coupled(-self.damping).a_n
     }
 
     /// Whether all roots are left of Re λ = −`decay` at the delay `tau`; none where one is on that

@@ -32,7 +32,9 @@ impl Beyond {
             };
             let sensor = lag(self.lags.sensor);
             let a_v = (groups.a_v * factor).abs() / (lag(self.lags.velocity) * sensor);
-            let a_n = (groups.a_n * factor).abs() / (lag(self.lags.load) * sensor);
+            let plain = groups.a_n.abs() + self.damping * groups.a_v.abs();
+            let a_n = (plain * factor).abs() / (lag(self.lags.load) * sensor);
+            let a_n = a_n + self.damping * a_v;
             root_bound(groups.b, a_v, a_n, control) * (1.0 + 1e-12)
         };
         // A lag of exactly 1/σ is 0 at ω = 0 alone.
