@@ -23,8 +23,9 @@ const STEEPEST: f64 = 1e4;
 /// Range of delays by default, in periods: 2π√(M/κ) of the free oscillator, or those of the slowest
 /// swing without delay of a system from a file.
 const PERIODS: f64 = 4.0;
-/// Range of the gain of velocity control by default, in units of the larger of 1 and |b|. The best
-/// settings lie far inside, at −0.16 to −0.32 for −0.73 < b < 0.
+/// Range of the gain of velocity control by default, in units of the larger of 1 and |b|. Without
+/// dashpots the best settings lie far inside, at −0.16 to −0.32 for −0.73 < b < 0. With one beside
+/// the spring there are others at short delays and large gains, which have to be asked for.
 const FARTHEST_VELOCITY: f64 = 2.0;
 /// Range of the load gain by default, beyond 0 and beyond the weakest negative gain that
 /// stabilises, in units of 1 + |b|. The triple real root lies at half of that or less.
@@ -181,9 +182,13 @@ fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
         "such that |mu_prime| N0/sqrt(kappa M) is at most 1e4 where best settings are searched",
         (family.fixed.b - dashpots).abs() <= STEEPEST,
     )?;
+    let larger = Parameter::DASHPOTS
+        .into_iter()
+        .max_by(|p, q| setting.get(*p).total_cmp(&setting.get(*q)));
+    let larger = larger.unwrap_or(Parameter::Damping);
     ModelError::check(
-        "damping",
-        setting.get(Parameter::Damping),
+        larger.name(),
+        setting.get(larger),
         "such that (damping + viscous)/sqrt(kappa M) is at most 1e4 where best settings are \
             searched",
         dashpots <= STEEPEST,

@@ -125,21 +125,22 @@ pub(super) fn zeros_from(
 }
 
 /// Tells `found` all zeros of `f` up to `to`, and maybe some beyond it, by rising frequency: 0
-/// where f may be 0 there, and one zero for each stretch on which the sign of f is lost.
+/// where f may be 0 there, and one zero for each stretch on which the sign of f is lost. False with
+/// a stretch on whose sides f has the same sign: it may have no zero.
 ///
 /// # Errors
 /// When there are too many, and where nothing is known of f.
 pub(super) fn zeros(
     f: &impl RealFunction,
     to: f64,
-    mut found: impl FnMut(f64),
+    mut found: impl FnMut(f64, bool),
 ) -> Result<(), TooMany> {
     if to == 0.0 {
         return Ok(());
     }
     let mut here = f.at(0.0);
     if here.sign().is_none() {
-        found(0.0);
+        found(0.0, true);
         here = beyond_zero(f, &here, to).ok_or(TooMany)?;
     }
     let search = Search {
@@ -147,7 +148,7 @@ pub(super) fn zeros(
         precision: NEARLY,
     };
     zeros_from(f, here, search, &mut { MOST_STEPS }, |switch| {
-        found(nearer(f, &switch));
+        found(nearer(f, &switch), switch.sign != 0);
         true
     })
 }

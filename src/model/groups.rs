@@ -39,6 +39,9 @@ impl Groups {
     #[inline]
     #[must_use]
     pub(crate) fn coupled(self, damping: f64) -> Self {
+        if damping == 0.0 {
+            return self;
+        }
         Self {
             a_n: self.a_n - damping * self.a_v,
             ..self

@@ -143,11 +143,24 @@ impl Oscillator {
         control: Control,
     ) -> Groups {
         Groups {
-            b: sliding.mu_prime * self.normal_load / self.damping_unit
-                + self.dashpot_ratios().sum(),
+            b: self.damping_of(sliding.mu_prime) / self.damping_unit,
             a_v: control.alpha_v * self.time_unit,
             a_n: sliding.mu_k * control.alpha_n / self.stiffness,
         }
+    }
+
+    /// μ_K′ N0 + c + c_g, with the right sign however much of it cancels.
+    #[inline]
+    fn damping_of(&self, mu_prime: f64) -> f64 {
+        let slope = mu_prime * self.normal_load;
+        let Dashpots { damping, viscous } = self.dashpots;
+        if damping == 0.0 && viscous == 0.0 {
+            return slope;
+        }
+        let rounding = mu_prime.mul_add(self.normal_load, -slope);
+        let (sum, first) = two_sum(slope, damping);
+        let (sum, second) = two_sum(sum, viscous);
+        sum + (rounding + first + second)
     }
 
     /// How the groups before that step grow with their parameters: b per μ_K′, a_v per α_v, a_n per
@@ -160,6 +173,13 @@ impl Oscillator {
             a_n: sliding.mu_k / self.stiffness,
         }
     }
+}
+
+/// The sum of two numbers, and what it lacks by rounding (Knuth).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 /// Gains of the delayed feedback (the letter's Eq. 2); both may act at once.
@@ -200,5 +220,47 @@ impl SlidingPoint {
             mu_k: law.mu_k(v0),
             mu_prime: law.mu_prime(v0),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Slopes next to those that dashpots cancel: the sign is that of whole numbers.
+    #[test]
+    fn the_sign_of_the_damping_survives_cancellation() {
+        let unit = 2.0_f64.powi(-30);
+        // μ′ N0 + c + c_g in units of 2⁻⁶⁰, all factors being whole numbers below 2⁵³.
+        for (slope, load, damping, viscous) in [
+            (
+                -999_999_937_i64,
+                1_000_000_007_i64,
+                500_000_000_i64,
+                431_322_575_i64,
+            ),
+            (-836_448_598, 2_297_807_411, 998_580_000, 791_430_000),
+            (-322_122_547, 1_073_741_824, 107_374_182, 214_748_365),
+        ] {
+            for off in -2..=2 {
+                let exact = i128::from(slope) * i128::from(load)
+                    + i128::from(damping + viscous + off) * (1 << 30);
+                let block = Oscillator::new(1.3, 0.7, load as f64 * unit).unwrap();
+                let dashpots = Dashpots {
+                    damping: damping as f64 * unit,
+                    viscous: (viscous + off) as f64 * unit,
+                };
+                let sliding = SlidingPoint {
+                    mu_k: 0.5,
+                    mu_prime: slope as f64 * unit,
+                };
+                let groups = block
+                    .damped(dashpots)
+                    .unwrap()
+                    .groups(sliding, Control::default());
+                let sign = groups.b.partial_cmp(&0.0).unwrap();
+                assert_eq!(sign, exact.cmp(&0), "{slope} {load} {off} {}", groups.b);
+            }
+        }
     }
 }

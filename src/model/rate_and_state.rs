@@ -9,7 +9,7 @@
 //! A is the direct effect, B the effect of evolution, D the slip distance. c says how much a change
 //! of the load changes the state (Linker and Dieterich 1992); with c = 0 it does not. (1)
 //! linearised about sliding at v₀ depends on α, β, T and c alone. κ_c is the stiffness below which
-//! steady sliding without control is unstable.
+//! steady sliding without control and without dashpots is unstable.
 
 use super::elementary::ln;
 use super::law::{Form, Made};

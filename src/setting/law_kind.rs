@@ -24,6 +24,11 @@ static NAMED: LazyLock<Vec<NamedLaw>> = LazyLock::new(|| Form::all().map(NamedLa
 
 impl NamedLaw {
     fn of(form: &'static Form) -> Self {
+        assert!(
+            form.parameters.len() <= MOST,
+            "{} has too many parameters",
+            form.name
+        );
         let written = |name: &str| Parameter::from_name(name).expect("a law names parameters");
         Self {
             form,

@@ -207,6 +207,13 @@ impl Case {
 
     fn check(&self) -> Result<(), ModelError> {
         ModelError::positive("v0", self.v0)?;
+        let damped = self.oscillator.dashpot_ratios().sum();
+        ModelError::check(
+            "damping",
+            damped,
+            "0 where motions are followed",
+            damped == 0.0,
+        )?;
         let Feedback {
             gains,
             tau,

@@ -399,7 +399,7 @@ test("a measured law is pasted as CSV, and a mistake in it is told", async () =>
 
 test("units label axes and numbers", async () => {
   const page = await openPage(browser, server.link);
-  await page.getByText("Mass, spring, load, units").click();
+  await page.getByText("Mass, spring, load, dashpots, units").click();
   await page.locator("#units").selectOption("N,m,s");
   await settled(page);
   const axes = await page.evaluate(() => window.slipmap.plane.plane.axes.map(({ unit }) => unit));

@@ -202,7 +202,7 @@ fn numbers_at(grid: &Grid, gain: &'static str, value: f64, tau: f64) -> Numbers 
     numbers
 }
 
-/// Along the gains the curves are crossings, and bound what is counted.
+/// Along the gains the curves are crossings.
 #[test]
 fn curves_go_along_the_physical_gains() {
     for gain in ["alpha_v", "alpha_n"] {
@@ -219,10 +219,6 @@ fn curves_go_along_the_physical_gains() {
             vertices += 1;
         }
         assert!(vertices > 200, "{vertices}");
-        // Counts of cells change only across curves: both are by the same closed form, so this
-        // compares how the gain enters.
-        let stable = grid.cells.n_unstable.as_ref().unwrap();
-        assert!(stable.contains(&0) && stable.iter().any(|n| *n != 0));
     }
 }
 

@@ -190,6 +190,21 @@ fn roots_with_latency(setting: Setting, latency: f64) -> f64 {
     1.0 - turned / PI
 }
 
+/// |L| stays below 1 by 5e-15, which rounding does not tell: no phase is made up.
+#[test]
+fn a_loop_that_nearly_reaches_one_has_no_phase_margin() {
+    let setting = Setting {
+        groups: Groups::new(7.437_756_968_535_555e-8, 0.0, -3.971_312_195_053_339e-6),
+        tau: 0.001_428_590_748_389_781_8,
+        decay: 0.0,
+    };
+    let mut search = MarginSearch::default();
+    let found = search.of_loop(&setting);
+    for margin in [search.phase(&setting), found.phase, found.latency] {
+        assert!(!margin.is_finite(), "{margin}");
+    }
+}
+
 #[test]
 fn loop_margins_are_those_of_brute_force() {
     let mut search = MarginSearch::default();

@@ -27,7 +27,7 @@ use crate::model::{Channel, ModelError};
 /// // Where it ends, s = iω is a root: |P(iω)| = 0.5.
 /// let omega = line.crossings[0].omega;
 /// assert!((f64::hypot(1.0 - omega * omega, 0.1 * omega) - 0.5).abs() < 1e-12);
-/// # Ok::<(), slipmap::linear::general::DegreeTooLarge>(())
+/// # Ok::<(), slipmap::model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct System {

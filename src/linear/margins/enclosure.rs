@@ -35,7 +35,7 @@ pub(super) struct Point<const V: usize> {
     pub latency: Option<Affine<V>>,
     /// The variable on which b and a_n depend by a law that is not straight.
     pub law: Option<usize>,
-    /// Memory, latency and lags.
+    /// Memory, latency, lags and a damped spring.
     pub beyond: Option<Beyond>,
 }
 
@@ -233,11 +233,13 @@ impl SlidingLaw<'_> {
             }
             number
         };
-        let along = |value: f64, unit: f64, (low, high): (f64, f64)| {
+        // `shift` ≥ 0 is the part of the value that the law does not change.
+        let along = |value: f64, shift: f64, unit: f64, (low, high): (f64, f64)| {
             let mut number = Affine::constant(value.into());
             let (steep, spread) = (0.5 * (low + high), 0.5 * (high - low));
             number.part[variable] = Complex64::from(unit * steep * half);
-            let rounding = 64.0 * f64::EPSILON * (value.abs() + (unit * steep * half).abs());
+            let size = (value - shift).abs() + shift + (unit * steep * half).abs();
+            let rounding = 64.0 * f64::EPSILON * size;
             // The slope over the box may lie anywhere between both.
             number.rest = unit.abs() * spread * half * (1.0 + 1e-12) + rounding;
             number
@@ -251,10 +253,10 @@ impl SlidingLaw<'_> {
         }
         let bends = self.law.curvatures_between(between.0, between.1);
         let b = match bends.0.is_finite() {
-            true => along(at.b, unit.b, bends),
+            true => along(at.b, still, unit.b, bends),
             // The slope jumps: all that is known is its range.
             false => within(unit.b, allowed),
         };
-        Some([b, along(at.a_n, unit.a_n, slopes)])
+        Some([b, along(at.a_n, 0.0, unit.a_n, slopes)])
     }
 }

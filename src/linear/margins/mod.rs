@@ -25,7 +25,7 @@
 //!
 //! - `affine`: complex affine arithmetic
 //! - `along`: limits along the delay, the latency and the sliding velocity
-//! - `beyond`: the same with memory, latency and lags
+//! - `beyond`: the same with memory, latency, lags and a damped spring
 //! - `crossing_delays`: the delays at which a root is on the line, over boxes of the other
 //!   variables
 //! - `enclosure`: D over boxes of frequency and parameters
@@ -140,7 +140,7 @@ impl MarginSearch {
             let end = line.gain_bound(most).min(highest);
             self.changes.clear();
             let changes = &mut self.changes;
-            let mut keep = |omega| {
+            let mut keep = |omega, _| {
                 let factor = line.gain_factor(omega);
                 if factor > 0.0 && factor <= most {
                     changes.push(factor);
@@ -154,7 +154,7 @@ impl MarginSearch {
             }
             // A real root on the line; on the imaginary axis there is none.
             if case.setting.decay > 0.0 {
-                keep(0.0);
+                keep(0.0, true);
             }
             let search = Search {
                 changes: &self.changes,
@@ -182,7 +182,7 @@ impl MarginSearch {
         let (f, end) = line.slope();
         self.changes.clear();
         let changes = &mut self.changes;
-        let mut keep = |omega| {
+        let mut keep = |omega, _| {
             let slope = line.slope_at(omega);
             if slope.is_finite() {
                 changes.push(slope);
@@ -192,7 +192,7 @@ impl MarginSearch {
             return Limits::UNDECIDED;
         }
         if case.setting.decay > 0.0 {
-            keep(0.0);
+            keep(0.0, true);
         }
         let search = Search {
             changes: &self.changes,
@@ -259,12 +259,15 @@ impl MarginSearch {
         }
     }
 
-    /// Tells `each` the frequencies at which |L| = 1, and arg(−L) there.
+    /// Tells `each` the frequencies at which |L| = 1, and arg(−L) there. An error also where
+    /// rounding leaves open whether |L| reaches 1.
     fn unit_loop(line: &impl OnLine, mut each: impl FnMut(f64, f64)) -> Result<(), TooMany> {
-        let end = line.unit_loop_bound();
-        zeros(&line.unit_loop(), end, |omega| {
+        let (end, mut known) = (line.unit_loop_bound(), true);
+        zeros(&line.unit_loop(), end, |omega, crosses| {
+            known &= crosses;
             each(omega, arg(line.negative_loop(omega)));
-        })
+        })?;
+        known.then_some(()).ok_or(TooMany)
     }
 }
 

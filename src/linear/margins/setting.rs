@@ -68,8 +68,8 @@ impl Setting {
 }
 
 impl Case {
-    /// A setting with memory, latency and lags. Without gains the first two are left aside: there
-    /// is nothing to remember and nothing that could be late.
+    /// A setting with memory, latency, lags and a damped spring. Without gains the first two are
+    /// left aside: there is nothing to remember and nothing that could be late.
     #[must_use]
     pub fn beyond(setting: Setting, mut beyond: Beyond) -> Self {
         if setting.groups.uncontrolled() {

@@ -1,4 +1,4 @@
-//! Kinetic friction laws μ_K(v): a law is one file and one line of `laws!`.
+//! Kinetic friction laws μ_K(v): a law is one file, and its lines here.
 //!
 //! - `coulomb`: the same at all speeds
 //! - `discs`: how far a series holds whose first coefficients do not tell

@@ -1,8 +1,9 @@
-//! Margins of the letter's control with memory, latency and lags.
+//! Margins of the letter's control with memory, latency, lags and a dashpot d beside the spring.
 //!
 //! ```text
 //! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ),   λ = −σ + iω                            (1)
-//! B = (λ² + bλ + 1) L_a L_v L_s,   A = a_n L_v + a_v (b + λ) L_a,   L = 1 + Tλ              (2)
+//! B = (λ² + bλ + 1) L_a L_v L_s,   L = 1 + Tλ                                                (2)
+//! A = (a_n + d a_v) L_v + a_v (b − d + λ) L_a
 //! ```
 //!
 //! - `feedback`: what such feedback has, (1) and (2), and which settings of it are stable
