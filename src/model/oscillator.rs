@@ -23,8 +23,9 @@ pub struct Oscillator {
     time_unit: f64,
     /// √(κM), the unit of damping.
     damping_unit: f64,
-    /// Physical.
+    /// Physical, and in units of √(κM).
     dashpots: Dashpots,
+    dashpot_ratios: Dashpots,
 }
 
 /// Dashpots beside the spring and to the ground, mass/time; or both in units of √(κM), see
@@ -55,6 +56,7 @@ impl Default for Oscillator {
             time_unit: 1.0,
             damping_unit: 1.0,
             dashpots: Dashpots::default(),
+            dashpot_ratios: Dashpots::default(),
         }
     }
 }
@@ -74,6 +76,7 @@ impl Oscillator {
             time_unit: (mass / stiffness).sqrt(),
             damping_unit: (stiffness * mass).sqrt(),
             dashpots: Dashpots::default(),
+            dashpot_ratios: Dashpots::default(),
         })
     }
 
@@ -86,17 +89,21 @@ impl Oscillator {
         for (name, value) in [("damping", damping), ("viscous", viscous)] {
             ModelError::check(name, value, "finite and at least 0", value >= 0.0)?;
         }
-        Ok(Self { dashpots, ..self })
+        let dashpot_ratios = Dashpots {
+            damping: damping / self.damping_unit,
+            viscous: viscous / self.damping_unit,
+        };
+        Ok(Self {
+            dashpots,
+            dashpot_ratios,
+            ..self
+        })
     }
 
     /// d = c/√(κM) and g = c_g/√(κM): twice their damping ratios.
     #[must_use]
     pub fn dashpot_ratios(&self) -> Dashpots {
-        let Dashpots { damping, viscous } = self.dashpots;
-        Dashpots {
-            damping: damping / self.damping_unit,
-            viscous: viscous / self.damping_unit,
-        }
+        self.dashpot_ratios
     }
 
     /// M.
@@ -131,7 +138,7 @@ impl Oscillator {
     #[inline]
     pub fn groups(&self, sliding: SlidingPoint, control: Control) -> Groups {
         self.groups_without_coupling(sliding, control)
-            .coupled(self.dashpot_ratios().damping)
+            .coupled(self.dashpot_ratios.damping)
     }
 
     /// The groups but for the last step: b includes the dashpots, a_n does not yet.

@@ -371,13 +371,16 @@ impl Setting {
     /// # Errors
     /// When mass, stiffness or load are not positive, or a dashpot is negative.
     pub fn oscillator(&self) -> Result<Oscillator, ModelError> {
-        let [damping, viscous] = Parameter::DASHPOTS.map(|dashpot| self.get(dashpot));
-        Oscillator::new(
+        let undamped = Oscillator::new(
             self.get(Parameter::Mass),
             self.get(Parameter::Stiffness),
             self.get(Parameter::NormalLoad),
-        )?
-        .damped(Dashpots { damping, viscous })
+        )?;
+        let [damping, viscous] = Parameter::DASHPOTS.map(|dashpot| self.get(dashpot));
+        if damping == 0.0 && viscous == 0.0 {
+            return Ok(undamped);
+        }
+        undamped.damped(Dashpots { damping, viscous })
     }
 
     /// Whether a delay is given but has no effect, because both gains are 0.

@@ -110,6 +110,32 @@ fn ends((from, to): (f64, f64)) -> std::ops::RangeInclusive<f64> {
     from..=to
 }
 
+/// The groups and the unit of time as one parameter changes.
+fn groups_along(
+    setting: &Setting,
+    parameter: Parameter,
+) -> Result<impl Fn(f64) -> Result<(Groups, f64), ModelError>, ModelError> {
+    let gain = searched_gain(parameter);
+    // No gain changes the block.
+    let block = match gain {
+        Some(_) => Some((setting.oscillator()?, setting.sliding_point()?)),
+        None => None,
+    };
+    Ok(move |p: f64| {
+        let Some((oscillator, sliding)) = block else {
+            let mut setting = setting.clone();
+            setting.set(parameter, p);
+            return setting.groups();
+        };
+        let mut control = setting.control();
+        match gain {
+            Some(SearchedGain::Velocity) => control.alpha_v = p,
+            _ => control.alpha_n = p,
+        }
+        Ok((oscillator.groups(sliding, control), oscillator.time_unit()))
+    })
+}
+
 fn trace_window(
     setting: &Setting,
     parameter: Parameter,
@@ -117,11 +143,7 @@ fn trace_window(
     degrees_of_stability: &[f64],
     stop: &Stop,
 ) -> Result<Vec<DegreeCurves>, ModelError> {
-    let groups_at = |p: f64| {
-        let mut setting = setting.clone();
-        setting.set(parameter, p);
-        setting.groups()
-    };
+    let groups_at = groups_along(setting, parameter)?;
     groups_at(*window.p.start())?;
     groups_at(*window.p.end())?;
     // The model's ranges are intervals, so it is valid between two valid ends.
