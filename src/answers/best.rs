@@ -180,12 +180,13 @@ fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
         "mu_prime",
         sliding.mu_prime,
         "such that |mu_prime| N0/sqrt(kappa M) is at most 1e4 where best settings are searched",
-        (family.fixed.b - dashpots).abs() <= STEEPEST,
+        family.slope().abs() <= STEEPEST,
     )?;
-    let larger = Parameter::DASHPOTS
-        .into_iter()
-        .max_by(|p, q| setting.get(*p).total_cmp(&setting.get(*q)));
-    let larger = larger.unwrap_or(Parameter::Damping);
+    let [one, other] = Parameter::DASHPOTS;
+    let larger = match setting.get(one) >= setting.get(other) {
+        true => one,
+        false => other,
+    };
     ModelError::check(
         larger.name(),
         setting.get(larger),

@@ -125,8 +125,8 @@ pub(super) fn zeros_from(
 }
 
 /// Tells `found` all zeros of `f` up to `to`, and maybe some beyond it, by rising frequency: 0
-/// where f may be 0 there, and one zero for each stretch on which the sign of f is lost. False with
-/// a stretch on whose sides f has the same sign: it may have no zero.
+/// where f may be 0 there, and one zero for each stretch on which the sign of f is lost. With each
+/// it tells whether f changes its sign there; where not, f may come near 0 without a zero.
 ///
 /// # Errors
 /// When there are too many, and where nothing is known of f.

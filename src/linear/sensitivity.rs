@@ -39,7 +39,7 @@ impl Sensitivity {
         Self::by_derivatives(&jet, per, lambda)
     }
 
-    /// The same where a_n falls by d a_v, as with a dashpot beside the spring: a_v is then
+    /// These derivatives where a_n falls by d a_v, as with a dashpot beside the spring: a_v is then
     /// ∂λ/∂a_v − d ∂λ/∂a_n.
     #[must_use]
     pub(crate) fn coupled(self, damping: f64) -> Self {

@@ -37,7 +37,7 @@ impl NamedLaw {
         }
     }
 
-    /// All of them, in the order of lists.
+    /// All named laws, in the order of lists.
     #[must_use]
     pub fn all() -> &'static [Self] {
         &NAMED

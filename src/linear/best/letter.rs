@@ -67,7 +67,7 @@ impl Letter {
 
     /// The part of b that is the slope of friction.
     #[must_use]
-    pub(super) fn slope(&self) -> f64 {
+    pub(crate) fn slope(&self) -> f64 {
         self.fixed.b - self.dashpots.sum()
     }
 
