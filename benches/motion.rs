@@ -17,7 +17,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use slipmap::model::{Feedback, FrictionLaw};
+use slipmap::model::{Dashpots, Feedback, FrictionLaw};
 use slipmap::slip::motion::{Accuracy, Event, Motion, Parameters};
 
 const END: f64 = 200.0;
@@ -38,6 +38,7 @@ fn problems() -> [Problem; 3] {
     let letter = |v0, alpha_v, alpha_n, tau, switch_on| Parameters {
         law: law.clone(),
         velocity_unit: 1.0,
+        dashpots: Dashpots::default(),
         feedback: Feedback::new(alpha_v, alpha_n, tau),
         v0,
         switch_on,

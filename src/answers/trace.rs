@@ -361,13 +361,14 @@ impl Sample {
         } else {
             0.0
         };
+        let limits = p.feedback.limits;
         Self {
             t: (begun.t + s) * units.time,
             x: (begun.x + step.displacement(s)) * units.length,
             x_dot: u * units.velocity,
             a: a * units.length,
-            v: (p.v0 + p.feedback.gains.alpha_v * difference) * units.velocity,
-            n: n * units.force,
+            v: limits.velocity_of(p.v0 + p.feedback.gains.alpha_v * difference) * units.velocity,
+            n: limits.load_of(n) * units.force,
             mode: begun.mode,
         }
     }

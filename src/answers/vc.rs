@@ -69,6 +69,7 @@ impl VcProblem {
         )?;
         let problem = Problem {
             velocity_unit: units.velocity,
+            dashpots: oscillator.dashpot_ratios(),
             ..Problem::new(law, feedback.dimensionless(&oscillator))
         };
         Ok(Self { problem, units })
@@ -89,7 +90,7 @@ impl VcProblem {
             Protocol::Follow => followed(&critical_velocity(problem), problem, units),
             Protocol::SwitchOn(phase) => {
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
-                let scan = Scan::default();
+                let scan = Scan::default().within(problem);
                 let phase = in_motion_units(phase, units);
                 let windows = switch_on::windows(problem, phase, &scan, accuracy);
                 let v_max = scan.v_max * problem.law.mu_s();
@@ -205,7 +206,8 @@ impl VcProblem {
         let Self { problem, units } = self;
         let unit = problem.law.mu_s();
         let stable = |v0: f64| problem.count(v0).stable();
-        let (lowest, mut above) = (free / units.velocity, v_max * unit);
+        let [_, most] = problem.feedback.limits.velocity;
+        let (lowest, mut above) = (free / units.velocity, (v_max * unit).min(most));
         if lowest.is_nan() || !stable(above) {
             return f64::NAN;
         }
@@ -242,7 +244,7 @@ fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> C
     let critical = in_units(found, units);
     let top = match critical.transition {
         Transition::LiftOff => critical.v_liftoff,
-        Transition::Persists => Protocol::Follow.v_max() * problem.law.mu_s() * units.velocity,
+        Transition::Persists => problem.v_max() * units.velocity,
         _ => critical.vc,
     };
     CriticalWindows {

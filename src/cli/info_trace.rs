@@ -69,6 +69,12 @@ struct Numbers {
     /// The largest spring force since switch-on; null where it grew beyond all numbers.
     #[schema(required)]
     peak_force: Option<f64>,
+    /// How long v or N was at a limit since switch-on; null without limits of actuators.
+    #[schema(required)]
+    time_at_limit: Option<f64>,
+    /// The share of the time since switch-on; null without limits of actuators.
+    #[schema(required)]
+    share_at_limit: Option<f64>,
     /// Period of stick-slip; null where it did not end up in that.
     #[schema(required)]
     period: Option<f64>,
@@ -93,6 +99,8 @@ impl From<&Summary> for Numbers {
             settle_time: told(summary.settle_time),
             n_min: told(summary.n_min),
             peak_force: told(summary.peak),
+            time_at_limit: told(summary.time_at_limit),
+            share_at_limit: told(summary.share_at_limit),
             period: told(summary.period),
             stick_time: told(summary.stick_time),
             slip_time: told(summary.slip_time),

@@ -300,6 +300,9 @@ impl<A: Asks> ParameterArgs<A> {
                 setting.set(parameter, value);
             }
         }
+        if let Some((message, help)) = setting.excluded_by_limits(flag) {
+            return Err(Failure::bad_input_with_help(message, help));
+        }
         if !searched.contains(&Parameter::Tau) {
             warn_of_idle_delay(setting.has_idle_delay());
         }

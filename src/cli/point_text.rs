@@ -108,7 +108,7 @@ fn print_block(
         (Parameter::AlphaN, point.alpha_n),
         (Parameter::Tau, point.tau),
     ];
-    let beyond = Parameter::ALL.into_iter().filter(|p| p.absent_at_zero());
+    let beyond = Parameter::ALL.into_iter().filter(|p| p.absent_by_default());
     let beyond = beyond
         .filter(|parameter| setting.uses(*parameter))
         .map(|parameter| (parameter, setting.get(parameter)));

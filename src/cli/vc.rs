@@ -284,7 +284,7 @@ impl Args {
             }
         } else if self.parameters.any_but(&[]) || self.file.is_given() {
             return Err(Failure::bad_input_with_help(
-                "the limit takes no parameters but --gamma and --mu-ratio",
+                "the limit takes no parameters but --gamma, --damping-ratio and --mu-ratio",
                 "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5",
             ));
         }
@@ -302,9 +302,11 @@ impl Args {
         };
         let gamma = needed(Parameter::Gamma)?;
         let mu_ratio = needed(Parameter::MuRatio)?;
-        ShortDelay::at(gamma, mu_ratio).map_err(|e| {
-            let given = [Parameter::Gamma, Parameter::MuRatio];
-            let of = given.into_iter().find(|p| p.name() == e.parameter);
+        let damping_ratio = self.limit.get(Parameter::DampingRatio).unwrap_or(0.0);
+        ShortDelay::at(gamma, damping_ratio, mu_ratio).map_err(|e| {
+            let of = Parameter::OF_LIMIT
+                .into_iter()
+                .find(|p| p.name() == e.parameter);
             of.map_or_else(
                 || Failure::from(e.clone()),
                 |p| Failure::out_of_range(&flag(p), &e),

@@ -39,7 +39,9 @@ pub fn critical_velocities(
         block.fill(0, last, neighbour);
         block.settle();
     }
-    block.found
+    let told = problems.iter().zip(block.found);
+    told.map(|(problem, found)| found.map(|found| found.within_limits(problem)))
+        .collect()
 }
 
 struct Block<'p> {

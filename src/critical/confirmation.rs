@@ -25,6 +25,7 @@ pub fn by_simulation(
         decided: critical.decided && !by_chance && ramped.chance != Chance::AtEnd,
         ..critical
     }
+    .within_limits(problem)
 }
 
 /// Options with which v0 glides to near the end of stick-slip that was `found`: by small steps,

@@ -25,7 +25,7 @@ use crate::slip::motion::{Accuracy, Motion};
 /// protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> CriticalVelocity {
-    from_scratch(problem).0
+    from_scratch(problem).0.within_limits(problem)
 }
 
 /// The critical velocity, and the neighbour from which continuation along the delay may start.

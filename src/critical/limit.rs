@@ -11,6 +11,10 @@
 //! ```
 //!
 //! for 0 < γ < 1. v_c = 0 from γ = 1 on, where a slip is damped so strongly that it never ends.
+//!
+//! Dashpots with the damping ratios ζ (beside the spring) and ζ_g (to the ground) damp a slip as
+//! the control does, but leave the load alone: ρ is that of γ + ζ + ζ_g, and γ stays in the other
+//! term.
 
 use crate::model::ModelError;
 use crate::model::elementary::{cos, exp, expm1, sin};
@@ -27,11 +31,11 @@ use crate::model::elementary::{cos, exp, expm1, sin};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoulombLimit {
-    /// v_c/ṽ; 0 for γ ≥ 1.
+    /// v_c/ṽ; 0 for γ + ζ + ζ_g ≥ 1.
     pub vc_over_vtilde: f64,
-    /// T, the duration of the grazing slip over √(M/κ); +∞ for γ ≥ 1.
+    /// T, the duration of the grazing slip over √(M/κ); +∞ for γ + ζ + ζ_g ≥ 1.
     pub omega0_t: f64,
-    /// v0/ṽ from which the block lifts off while it sticks: N0 = −α_N τ v0.
+    /// v0/ṽ from which the block lifts off while it sticks: N0 = −α_N τ v0; +∞ without control.
     pub liftoff_over_vtilde: f64,
 }
 
@@ -47,15 +51,17 @@ pub struct LimitCell {
 }
 
 impl LimitCell {
-    /// The limit at γ > 0 and μ_K/μ_S in (0, 1].
+    /// The limit at γ, ζ + ζ_g = `damping_ratio` and μ_K/μ_S. The letter's approximations are taken
+    /// at γ + ζ + ζ_g.
     ///
     /// # Errors
-    /// As [`CoulombLimit::at`].
-    pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+    /// As [`CoulombLimit::damped`].
+    pub fn at(gamma: f64, damping_ratio: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+        let damped = gamma + damping_ratio;
         Ok(Self {
-            exact: CoulombLimit::at(gamma, mu_ratio)?,
-            weak: weak(gamma),
-            strong: strong(gamma),
+            exact: CoulombLimit::damped(gamma, damping_ratio, mu_ratio)?,
+            weak: weak(damped),
+            strong: strong(damped),
         })
     }
 
@@ -96,21 +102,35 @@ impl CoulombLimit {
     /// When γ is not finite and greater than 0, or r not in its range.
     pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
         ModelError::positive("gamma", gamma)?;
+        Self::damped(gamma, 0.0, mu_ratio)
+    }
+
+    /// The limit at γ ≥ 0, ζ + ζ_g = `damping_ratio` ≥ 0, not both 0, and r = μ_K/μ_S in (0, 1].
+    ///
+    /// # Errors
+    /// When one of them is not in its range.
+    pub fn damped(gamma: f64, damping_ratio: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+        let known = |value: f64| value.is_finite() && value >= 0.0;
+        let range = "finite and at least 0";
+        ModelError::check("damping_ratio", damping_ratio, range, known(damping_ratio))?;
+        let acts = known(gamma) && gamma + damping_ratio > 0.0;
+        ModelError::check("gamma", gamma, "at least 0; above 0 without damping", acts)?;
         let inside = mu_ratio > 0.0 && mu_ratio <= 1.0;
         ModelError::check("mu_ratio", mu_ratio, "greater than 0, at most 1", inside)?;
         let stretch = 2.0 * gamma * (1.0 - mu_ratio) / mu_ratio;
         let liftoff_over_vtilde = 1.0 / stretch;
-        if gamma >= 1.0 {
+        let damped = gamma + damping_ratio;
+        if damped >= 1.0 {
             return Ok(Self {
                 vc_over_vtilde: 0.0,
                 omega0_t: f64::INFINITY,
                 liftoff_over_vtilde,
             });
         }
-        let omega = omega(gamma);
-        let before = phase_before_turn(gamma, omega);
+        let omega = omega(damped);
+        let before = phase_before_turn(damped, omega);
         let t = (std::f64::consts::TAU - before) / omega;
-        let rho = sin(before) * exp(gamma * t) / omega;
+        let rho = sin(before) * exp(damped * t) / omega;
         Ok(Self {
             vc_over_vtilde: 1.0 / (rho + stretch),
             omega0_t: t,
@@ -184,10 +204,10 @@ mod tests {
 
     #[test]
     fn errors_are_relative_and_have_no_value_without_stick_slip() {
-        let cell = LimitCell::at(0.25, 0.5).unwrap();
+        let cell = LimitCell::at(0.25, 0.0, 0.5).unwrap();
         let [vc, error] = [cell.exact.vc_over_vtilde, cell.error(cell.weak)];
         assert!((vc * (1.0 + error) / weak(0.25) - 1.0).abs() < 1e-14);
-        let beyond = LimitCell::at(1.5, 0.5).unwrap();
+        let beyond = LimitCell::at(1.5, 0.0, 0.5).unwrap();
         assert!(beyond.error(beyond.strong).is_nan());
         assert_eq!(beyond.exact.omega0_t, f64::INFINITY);
     }
@@ -207,6 +227,29 @@ mod tests {
         let found = CoulombLimit::at(1.0, 0.3).unwrap();
         assert_eq!((found.vc_over_vtilde, strong(1.5)), (0.0, 0.0));
         assert!(CoulombLimit::at(0.0, 0.5).is_err() && CoulombLimit::at(0.5, 1.2).is_err());
+    }
+
+    /// Values of another program, confirmed by ramps at short delays.
+    #[test]
+    fn dashpots_damp_a_slip_but_leave_the_load_alone() {
+        for (gamma, damping_ratio, expected) in [
+            (0.1, 0.05, 0.2215097306),
+            (0.0, 0.05, 0.5490463121),
+            (0.05, 0.2, 0.1382464635),
+            (0.3, 0.1, 0.06358831592),
+        ] {
+            let found = CoulombLimit::damped(gamma, damping_ratio, 0.5).unwrap();
+            // The table has v_c where ṽ = 0.5.
+            let off = (0.5 * found.vc_over_vtilde / expected - 1.0).abs();
+            assert!(off < 5e-10, "{found:?} {expected}");
+        }
+        assert_eq!(
+            CoulombLimit::damped(0.4, 0.6, 0.5).unwrap().vc_over_vtilde,
+            0.0
+        );
+        for (gamma, damping_ratio) in [(0.0, 0.0), (-0.1, 0.5), (0.5, -0.1), (0.5, f64::NAN)] {
+            assert!(CoulombLimit::damped(gamma, damping_ratio, 0.5).is_err());
+        }
     }
 
     proptest! {

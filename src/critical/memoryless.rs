@@ -91,8 +91,10 @@ impl Releases for Memoryless<'_> {
         let p = self.problem;
         self.motion.set_v0(v0);
         // At the end of a stick that outlasted the delay.
+        let load = 1.0 + p.feedback.gains.alpha_n * v0 * p.feedback.tau;
+        let load = p.feedback.limits.load_of(load);
         self.motion
-            .release_from(p.law.mu_s() * (1.0 + p.feedback.gains.alpha_n * v0 * p.feedback.tau));
+            .release_from(p.law.mu_s() * load - p.dashpots.damping * v0);
         &mut self.motion
     }
 }

@@ -5,7 +5,7 @@ use super::transition::Transition;
 use crate::linear::{Count, MarginalTolerance};
 use crate::model::law::Kind;
 use crate::model::stop::Stop;
-use crate::model::{Feedback, FrictionLaw, Groups};
+use crate::model::{Dashpots, Feedback, FrictionLaw, Groups};
 use crate::slip::motion::{Accuracy, Motion, Parameters};
 use crate::slip::sliding::Sliding;
 
@@ -17,6 +17,8 @@ pub struct Problem {
     pub law: FrictionLaw,
     /// N0/√(κM), the unit of velocity in which the law's speeds are given.
     pub velocity_unit: f64,
+    /// d and g, the dashpots beside the spring and to the ground, in units of √(κM).
+    pub dashpots: Dashpots,
     /// The feedback, without lags.
     pub feedback: Feedback,
     /// A flag that ends the search; its answer is then meaningless.
@@ -33,6 +35,7 @@ impl Problem {
         Self {
             law,
             velocity_unit: 1.0,
+            dashpots: Dashpots::default(),
             feedback,
             stop: Stop::default(),
             options: Options::default(),
@@ -45,6 +48,7 @@ impl Problem {
         Parameters {
             law: self.law.clone(),
             velocity_unit: self.velocity_unit,
+            dashpots: self.dashpots,
             feedback: self.feedback,
             v0,
             switch_on: match self.feedback.gains.act() {
@@ -62,19 +66,20 @@ impl Problem {
     /// A block under control that is released at t = 0 from a stick without memory at `v0`.
     pub(super) fn released(&self, v0: f64, accuracy: Accuracy) -> Motion {
         let mut motion = self.at_rest(v0, accuracy);
-        motion.release_from(self.law.mu_s());
+        motion.release_from(self.law.mu_s() - self.dashpots.damping * v0);
         motion
     }
 
     /// The result of `begin` at the first of the protocol's start velocities at which it has one.
     /// After lift-off only smaller ones are tried, since the smallest v0 of lift-off is asked for.
+    /// None is below the smallest v.
     pub(super) fn at_first_start<T>(
         &self,
         mut begin: impl FnMut(f64) -> Result<T, NoStart>,
     ) -> Option<T> {
         let mut lift_off = f64::INFINITY;
         for start in self.options.ramp.starts {
-            let v0 = start * self.law.mu_s();
+            let v0 = (start * self.law.mu_s()).max(self.feedback.limits.velocity[0]);
             if v0 > lift_off {
                 continue;
             }
@@ -126,19 +131,21 @@ impl Problem {
     }
 
     /// The largest v0 at which stick-slip is looked for.
-    pub(super) fn v_max(&self) -> f64 {
-        self.options.ramp.v_max * self.law.mu_s()
+    pub(crate) fn v_max(&self) -> f64 {
+        let [_, most] = self.feedback.limits.velocity;
+        (self.options.ramp.v_max * self.law.mu_s()).min(most)
     }
 
     /// The groups of linear stability at `v0`.
     #[must_use]
     pub fn groups(&self, v0: f64) -> Groups {
         let speed = v0 * self.velocity_unit;
-        Groups::new(
-            self.law.mu_prime(speed) * self.velocity_unit,
+        let plain = Groups::new(
+            self.law.mu_prime(speed) * self.velocity_unit + self.dashpots.sum(),
             self.feedback.gains.alpha_v,
             self.law.mu_k(speed) * self.feedback.gains.alpha_n,
-        )
+        );
+        plain.coupled(self.dashpots.damping)
     }
 
     /// The number of unstable roots of sliding at `v0`.
@@ -170,6 +177,7 @@ impl Problem {
     pub(super) fn persists_without_control(&self) -> bool {
         let mu_s = self.law.mu_s();
         !self.feedback.gains.act()
+            && self.dashpots == Dashpots::default()
             && matches!(self.law.kind(), Kind::Coulomb(law) if law.mu0 < mu_s)
     }
 }
@@ -286,6 +294,16 @@ impl CriticalVelocity {
             vc_upper: end,
             ..self
         }
+    }
+
+    /// The answer where v0 may not exceed the largest v of `problem`: stick-slip that lasts until
+    /// there persists.
+    pub(super) fn within_limits(self, problem: &Problem) -> Self {
+        let [_, most] = problem.feedback.limits.velocity;
+        if most == f64::INFINITY || self.vc_lower.is_nan() || self.vc_lower < most {
+            return self;
+        }
+        Self::nothing(f64::NAN, Transition::Persists, self.method).bounded_by_itself(most)
     }
 
     /// Whether `other` has the same end of stick-slip: at v_c, or the velocity of lift-off, within

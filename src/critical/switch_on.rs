@@ -52,6 +52,20 @@ impl Default for Scan {
     }
 }
 
+impl Scan {
+    /// This scan without velocities beyond the limits of v of `problem`.
+    #[must_use]
+    pub fn within(self, problem: &Problem) -> Self {
+        let [least, most] = problem.feedback.limits.velocity;
+        let unit = problem.law.mu_s();
+        Self {
+            v_min: self.v_min.max(least / unit),
+            v_max: self.v_max.min(most / unit),
+            ..self
+        }
+    }
+}
+
 /// Where stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Windows {

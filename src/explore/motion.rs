@@ -83,6 +83,12 @@ pub struct MotionSummary {
     /// The largest spring force since switch-on; null where it grew beyond all numbers.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub peak_force: f64,
+    /// How long v or N was at a limit since switch-on; null without limits of actuators.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub time_at_limit: f64,
+    /// The share of the time since switch-on; null without limits of actuators.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub share_at_limit: f64,
     /// Period of stick-slip; null where it did not end up in that.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub period: f64,
@@ -131,6 +137,8 @@ impl MotionSummary {
             // Avoids −0.
             n_min: summary.n_min + 0.0,
             peak_force: summary.peak,
+            time_at_limit: summary.time_at_limit,
+            share_at_limit: summary.share_at_limit,
             period: summary.period,
             stick_time: summary.stick_time,
             slip_time: summary.slip_time,

@@ -91,6 +91,8 @@ pub struct ShortDelay {
     pub protocol: &'static str,
     /// γ.
     pub gamma: f64,
+    /// ζ + ζ_g of dashpots.
+    pub damping_ratio: f64,
     /// μ_K/μ_S.
     pub mu_ratio: f64,
     /// The values of the fields.
@@ -99,12 +101,12 @@ pub struct ShortDelay {
 }
 
 impl ShortDelay {
-    /// At γ > 0 and μ_K/μ_S in (0, 1].
+    /// At γ ≥ 0, a damping ratio ≥ 0, not both 0, and μ_K/μ_S in (0, 1].
     ///
     /// # Errors
     /// When one of them is outside its range.
-    pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
-        let found = LimitCell::at(gamma, mu_ratio)?;
+    pub fn at(gamma: f64, damping_ratio: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+        let found = LimitCell::at(gamma, damping_ratio, mu_ratio)?;
         let fields = Field::ALL
             .into_iter()
             .filter_map(|field| match field.source() {
@@ -114,6 +116,7 @@ impl ShortDelay {
         Ok(Self {
             protocol: LIMIT,
             gamma,
+            damping_ratio,
             mu_ratio,
             fields: fields.collect(),
         })
@@ -144,8 +147,9 @@ mod schema {
             let mut whole = ObjectBuilder::new()
                 .property("protocol", protocol)
                 .property("gamma", object(number(), "γ"))
+                .property("damping_ratio", object(number(), "ζ + ζ_g of dashpots"))
                 .property("mu_ratio", object(number(), "μ_K/μ_S"));
-            for name in ["protocol", "gamma", "mu_ratio"] {
+            for name in ["protocol", "gamma", "damping_ratio", "mu_ratio"] {
                 whole = whole.required(name);
             }
             for field in Field::ALL.into_iter().filter(|field| field.of_limit()) {

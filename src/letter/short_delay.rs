@@ -134,7 +134,7 @@ impl Approximation {
         map: &Cells,
     ) -> Result<Self, LetterError> {
         let error = |gamma: f64| -> Result<f64, LetterError> {
-            let cell = LimitCell::at(gamma, RATIO)?;
+            let cell = LimitCell::at(gamma, 0.0, RATIO)?;
             Ok(cell.error(of(&cell)))
         };
         let errors = gammas.into_iter().map(|gamma| Ok((gamma, error(gamma)?)));

@@ -1,4 +1,4 @@
-//! The feedback of the elongation: gains, delay, memory, latency and lags.
+//! The feedback of the elongation: gains, delay, memory, latency, lags and limits of actuators.
 //!
 //! ```text
 //! S(t) = a(t) − a(t − τ) + R S(t − τ)
@@ -7,7 +7,7 @@
 //!
 //! The letter's own has R = δ = 0. Memory is that of extended time-delay autosynchronization
 //! (Socolar, Sukow and Gauthier, Phys. Rev. E 50, 3245, 1994). A lag T divides what passes through
-//! it by 1 + Tλ.
+//! it by 1 + Tλ. Limits clip v and N as they are commanded, before a lag.
 
 use super::oscillator::{Control, Oscillator};
 
@@ -47,6 +47,51 @@ impl Lags {
     }
 }
 
+/// Limits of the actuators: v and N stay within them, whatever is commanded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorLimits {
+    /// The smallest and the largest v, infinite for none; v0 is between them.
+    pub velocity: [f64; 2],
+    /// The smallest N, 0 for none, and the largest one; N0 is between them. With a smallest load
+    /// above 0 nothing lifts off.
+    pub load: [f64; 2],
+}
+
+impl Default for ActuatorLimits {
+    fn default() -> Self {
+        Self {
+            velocity: [f64::NEG_INFINITY, f64::INFINITY],
+            load: [0.0, f64::INFINITY],
+        }
+    }
+}
+
+impl ActuatorLimits {
+    /// Whether there are any.
+    #[must_use]
+    pub fn act(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// N where `commanded` is asked for; a smallest load of 0 leaves it as it is.
+    pub(crate) fn load_of(&self, commanded: f64) -> f64 {
+        match self.load {
+            [least, _] if least > 0.0 && commanded < least => least,
+            [_, most] if commanded > most => most,
+            _ => commanded,
+        }
+    }
+
+    /// v where `commanded` is asked for.
+    pub(crate) fn velocity_of(&self, commanded: f64) -> f64 {
+        match self.velocity {
+            [least, _] if commanded < least => least,
+            [_, most] if commanded > most => most,
+            _ => commanded,
+        }
+    }
+}
+
 /// Delayed feedback of the elongation: α_v in 1/time, α_N in force/length, and times; or all of it
 /// in the units of an oscillator, see [`Feedback::dimensionless`].
 ///
@@ -70,6 +115,8 @@ pub struct Feedback {
     pub channel: Channel,
     /// Lags of actuators and sensor.
     pub lags: Lags,
+    /// Limits of the actuators, in the units of v0 and N0.
+    pub limits: ActuatorLimits,
 }
 
 impl Feedback {
@@ -108,10 +155,12 @@ impl Feedback {
     }
 
     /// This feedback in the units of `oscillator`: times in √(M/κ), α_v in its inverse, α_N in
-    /// κ.
+    /// κ, limits in N0/√(κM) and N0.
     #[must_use]
     pub fn dimensionless(&self, oscillator: &Oscillator) -> Self {
         let unit = oscillator.time_unit();
+        let force = oscillator.normal_load();
+        let velocity_unit = force / oscillator.stiffness() / unit;
         let Lags {
             load,
             velocity,
@@ -131,6 +180,10 @@ impl Feedback {
                 load: load / unit,
                 velocity: velocity / unit,
                 sensor: sensor / unit,
+            },
+            limits: ActuatorLimits {
+                velocity: self.limits.velocity.map(|v| v / velocity_unit),
+                load: self.limits.load.map(|n| n / force),
             },
         }
     }

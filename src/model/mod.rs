@@ -15,7 +15,7 @@
 //! - `elementary`: sin, exp and the like, the same bits on every processor; the only file that
 //!   imports libm
 //! - `error`: errors of parameters out of range, and the format of numbers in messages
-//! - `feedback`: the feedback of the elongation: gains, delay, memory, latency, lags
+//! - `feedback`: the feedback of the elongation: gains, delay, memory, latency, lags, limits
 //! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone; B and A of D
 //! - `known_cases`: cases with known answers, for tests and benches alike
 //! - `law`: laws of kinetic friction, one file each: value, slope, their bounds, series
@@ -39,7 +39,7 @@ pub mod stop;
 pub mod table;
 
 pub use error::ModelError;
-pub use feedback::{Channel, Feedback, Lags};
+pub use feedback::{ActuatorLimits, Channel, Feedback, Lags};
 pub use groups::Groups;
 pub use law::FrictionLaw;
 pub use oscillator::{Control, Dashpots, Oscillator, SlidingPoint};

@@ -31,11 +31,11 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 
-use super::given::{GivenParameters, read_units};
+use super::given::GivenParameters;
 use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
-use super::units::Units;
+use super::units::{Units, read_units};
 use super::values::Setting;
 use crate::slip::case::{Case, CaseError};
 use crate::text::document::Document;

@@ -557,6 +557,28 @@ catalogue! {
             comment: Some(UNTIL_KNOWN),
             ..ROW
         };
+        /// How long an actuator is at a limit.
+        TimeAtLimit = Row {
+            name: "time_at_limit",
+            long_name: "time since switch-on for which velocity or load is at a limit of its \
+                        actuator",
+            short_name: "time at a limit",
+            measure: TIME,
+            source: Source::Motion(|motion| motion.time_at_limit),
+            spread: Spread::LongTail,
+            comment: Some(UNTIL_KNOWN),
+            ..ROW
+        };
+        /// That time over the time since switch-on.
+        ShareAtLimit = Row {
+            name: "share_at_limit",
+            long_name: "share of the time since switch-on for which velocity or load is at a \
+                        limit of its actuator",
+            short_name: "share at a limit",
+            source: Source::Motion(|motion| motion.share_at_limit),
+            comment: Some(UNTIL_KNOWN),
+            ..ROW
+        };
         /// The share of starts from which control ends in sliding.
         BasinShare = Row {
             name: "basin_share",

@@ -3,18 +3,17 @@
 
 use std::ops::Range;
 
+use super::actuator_limits::Excluding;
 use super::friction_table::GivenTable;
-use super::keys::{FRICTION_TABLE, UNITS, names};
+use super::keys::FRICTION_TABLE;
 use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
-use super::units::Units;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
 use crate::text::document::Document;
-use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 
 /// Parameters in the order of the file, each at most once.
@@ -284,6 +283,24 @@ impl GivenParameters {
         setting
     }
 
+    /// Checks that limits of actuators exclude nothing that has one value.
+    fn check_limits(&self) -> Result<(), SpecError> {
+        let value = |p: Parameter| {
+            let mut fixed = self.values.iter().filter(|(given, _)| *given == p);
+            let default = self.place(p).is_none().then(|| p.default_value()).flatten();
+            fixed
+                .next()
+                .map_or(default.unwrap_or(f64::NAN), |(_, value)| *value)
+        };
+        match Excluding::find(value, value) {
+            None => Ok(()),
+            Some(found) => Err(SpecError {
+                span: self.place(found.limit).cloned(),
+                ..SpecError::whole(found.message(Parameter::key)).help(found.help(Parameter::key))
+            }),
+        }
+    }
+
     /// Checks that every needed parameter is given, and none that would be ignored. Parameters in
     /// `optional` may be left out. A missing one is reported at the friction law, or at `place`.
     pub(super) fn check(
@@ -293,6 +310,7 @@ impl GivenParameters {
     ) -> Result<(), SpecError> {
         let law = self.law.as_ref().map(|(law, _)| law);
         let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
+        self.check_limits()?;
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
                 GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),
@@ -354,40 +372,6 @@ impl Setting {
             span: None,
             ..error
         })
-    }
-}
-
-fn read_unit(entry: &Entry) -> Result<String, SpecError> {
-    let name = entry.string()?;
-    Units::check_name(name).map_err(|why| entry.error(why))?;
-    Ok(name.to_owned())
-}
-
-/// Reads the table `[units]`.
-pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
-    if !units.is_table() {
-        let name = units.string()?;
-        return Units::preset(name).ok_or_else(|| {
-            let meant = did_you_mean(name, Units::PRESETS);
-            let known = Units::PRESETS.join(", ");
-            units
-                .error(format!("unknown units \"{name}\""))
-                .help(format!(
-                    "{meant}known: {known}; or a table of force, length and time"
-                ))
-        });
-    }
-    let mut table = units.document(names(&UNITS))?;
-    let [force, length, time] = ["force", "length", "time"].map(|key| table.take(key, read_unit));
-    table.finish()?;
-    match (force, length, time) {
-        (Some(force), Some(length), Some(time)) => Ok(Units {
-            force_length_time: Some([force, length, time]),
-        }),
-        _ => Err(SpecError::at(
-            units.key_span.clone(),
-            "units: force, length and time are needed, all three",
-        )),
     }
 }
 

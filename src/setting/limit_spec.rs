@@ -21,7 +21,7 @@ pub(super) fn check(
         return Err(given.unmet(no_meaning(parameter.name()), Some(place)));
     }
     for parameter in Parameter::ALL.into_iter().filter(|p| p.of_limit()) {
-        if given.place(parameter).is_none() {
+        if given.place(parameter).is_none() && parameter.default_value().is_none() {
             let error = GivenError::Missing(parameter);
             return Err(SpecError {
                 message: error.message(None, Parameter::key),

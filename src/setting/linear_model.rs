@@ -7,7 +7,9 @@ use super::values::Setting;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
-use crate::model::{Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator};
+use crate::model::{
+    ActuatorLimits, Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator,
+};
 
 impl Setting {
     /// Both gains.
@@ -24,6 +26,7 @@ impl Setting {
     #[must_use]
     pub fn feedback(&self) -> Feedback {
         let [load, velocity, sensor] = Parameter::LAGS.map(|lag| self.get(lag));
+        let [v_min, v_max, load_min, load_max] = Parameter::LIMITS.map(|limit| self.get(limit));
         Feedback {
             gains: self.control(),
             tau: self.get(Parameter::Tau),
@@ -35,6 +38,10 @@ impl Setting {
                 load,
                 velocity,
                 sensor,
+            },
+            limits: ActuatorLimits {
+                velocity: [v_min, v_max],
+                load: [load_min, load_max],
             },
         }
     }

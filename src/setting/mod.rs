@@ -1,5 +1,6 @@
 //! What can be said: parameters, fields, laws, units, settings, and the files that name them.
 //!
+//! - `actuator_limits`: limits of the actuators beside what they limit
 //! - `axis`: axis values, each from its index alone
 //! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
 //! - `best_plane`: the planes of a sweep in which the best setting is searched for
@@ -38,6 +39,7 @@
 //! - `values`: one value for every parameter, and which of them must be given
 //! - `vc_keys`: a sweep file's keys for the critical velocity
 
+pub(crate) mod actuator_limits;
 pub mod axis;
 pub mod basin;
 pub(crate) mod best_plane;

@@ -2,6 +2,7 @@
 //!
 //! Sweep files ask the rows in stages, between other checks; fields at any points ask all of them.
 
+use super::actuator_limits::{excluding, without_limits};
 use super::axis::Axis;
 use super::field::Field;
 use super::law_kind::{LawKind, NO_MOTIONS};
@@ -61,7 +62,7 @@ pub(super) enum ReportedAt {
 }
 
 impl ReportedAt {
-    fn refuse(self, message: impl Into<String>, help: impl Into<String>) -> Unmet {
+    pub(super) fn refuse(self, message: impl Into<String>, help: impl Into<String>) -> Unmet {
         Unmet {
             at: self,
             error: SpecError::whole(message).help(help),
@@ -86,7 +87,7 @@ const fn need(
 }
 
 /// The needs. Of several unmet ones the first is reported, at the first field that has it.
-const NEEDS: [Need; 16] = [
+const NEEDS: [Need; 18] = [
     need(Stage::Protocol, Field::of_limit, |asked, field| {
         (!asked.limit).then(|| of_limit(field))
     }),
@@ -178,6 +179,12 @@ const NEEDS: [Need; 16] = [
                 )
             })
         },
+    ),
+    need(Stage::Values, |_| true, |asked, _| excluding(asked)),
+    need(
+        Stage::Values,
+        |field| matches!(field, Field::TimeAtLimit | Field::ShareAtLimit),
+        without_limits,
     ),
     need(Stage::Values, Field::of_motion, |asked, _| {
         two_starts(|parameter| asked.has(parameter))

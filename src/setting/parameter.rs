@@ -336,6 +336,62 @@ catalogue! {
             page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Model)),
             ..DASHPOT
         };
+        /// The smallest pulling velocity of the actuator.
+        VMin = Row {
+            name: "v_min",
+            symbol: "v_min",
+            long_name: "smallest pulling velocity that the actuator has, whatever is commanded",
+            dimension: VELOCITY,
+            range: Range::Any,
+            default: Some(f64::NEG_INFINITY),
+            flag: Some(Flag {
+                value: "V",
+                help: "v_min, smallest velocity of the actuator, in motions [default: no limit]",
+            }),
+            ..ROW
+        };
+        /// The largest pulling velocity of the actuator.
+        VMax = Row {
+            name: "v_max",
+            symbol: "v_max",
+            long_name: "largest pulling velocity that the actuator has, whatever is commanded",
+            dimension: VELOCITY,
+            default: Some(f64::INFINITY),
+            flag: Some(Flag {
+                value: "V",
+                help: "v_max, largest velocity of the actuator, in motions [default: no limit]",
+            }),
+            ..ROW
+        };
+        /// The smallest load of the actuator.
+        LoadMin = Row {
+            name: "load_min",
+            symbol: "N_min",
+            long_name: "smallest normal load that the actuator has, whatever is commanded",
+            dimension: [1, 0, 0],
+            range: Range::NotNegative,
+            default: Some(0.0),
+            flag: Some(Flag {
+                value: "LOAD",
+                help: "Smallest load of the actuator, in motions; above 0 nothing lifts off \
+                    [default: 0]",
+            }),
+            page: Some(Page::new([0.0, 1.0], [0.0, 0.95]).folded(Folded::Model)),
+            ..ROW
+        };
+        /// The largest load of the actuator.
+        LoadMax = Row {
+            name: "load_max",
+            symbol: "N_max",
+            long_name: "largest normal load that the actuator has, whatever is commanded",
+            dimension: [1, 0, 0],
+            default: Some(f64::INFINITY),
+            flag: Some(Flag {
+                value: "LOAD",
+                help: "Largest load of the actuator, in motions [default: no limit]",
+            }),
+            ..ROW
+        };
         /// R, the memory of the feedback.
         Memory = Row {
             name: "memory",
@@ -553,10 +609,25 @@ catalogue! {
             name: "gamma",
             symbol: "γ",
             long_name: "strength of load control",
+            range: Range::NotNegative,
             group: Group::Limit,
             flag: Some(Flag {
                 value: "GAMMA",
                 help: "γ = −μ_K α_N τ/(2√(κM)) (with --protocol limit)",
+            }),
+            ..ROW
+        };
+        /// ζ + ζ_g of the dashpots in that limit.
+        DampingRatio = Row {
+            name: "damping_ratio",
+            symbol: "ζ",
+            long_name: "damping ratio of both dashpots together, (damping + viscous)/(2√(κM))",
+            range: Range::NotNegative,
+            default: Some(0.0),
+            group: Group::Limit,
+            flag: Some(Flag {
+                value: "ZETA",
+                help: "ζ = (c + c_g)/(2√(κM)) of dashpots (with --protocol limit) [default: 0]",
             }),
             ..ROW
         };
@@ -675,6 +746,12 @@ impl Parameter {
     /// The dashpots beside the spring and to the ground.
     pub(crate) const DASHPOTS: [Self; 2] = [Self::Damping, Self::Viscous];
 
+    /// The limits of the actuators: those of the velocity, then those of the load.
+    pub(crate) const LIMITS: [Self; 4] = [Self::VMin, Self::VMax, Self::LoadMin, Self::LoadMax];
+
+    /// The parameters of the limit of a short delay.
+    pub(crate) const OF_LIMIT: [Self; 3] = [Self::Gamma, Self::DampingRatio, Self::MuRatio];
+
     /// The lags of load, velocity and sensor.
     pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
 
@@ -688,11 +765,12 @@ impl Parameter {
         }
     }
 
-    /// True for what is absent and not mentioned at 0, its default: [`Parameter::BEYOND_LETTER`]
-    /// and dashpots.
+    /// True for what is absent and not mentioned at its default: [`Parameter::BEYOND_LETTER`],
+    /// dashpots and limits of actuators.
     #[must_use]
-    pub(crate) fn absent_at_zero(self) -> bool {
-        Self::DASHPOTS.contains(&self) || Self::BEYOND_LETTER.contains(&self)
+    pub(crate) fn absent_by_default(self) -> bool {
+        let mut absent = [&Self::DASHPOTS[..], &Self::LIMITS, &Self::BEYOND_LETTER].into_iter();
+        self == Self::DampingRatio || absent.any(|absent| absent.contains(&self))
     }
 
     /// True for the parameters of the start of a motion.

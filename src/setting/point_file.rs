@@ -17,10 +17,10 @@
 //! For the critical velocity there may also be `protocol`, `phase` and, in `[start]`,
 //! `switch_on_phase`, as in sweep files.
 
-use super::given::{GivenParameters, read_units};
+use super::given::GivenParameters;
 use super::parameter::{Group, Parameter};
 use super::search::Protocol;
-use super::units::Units;
+use super::units::{Units, read_units};
 use super::values::Setting;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;

@@ -23,8 +23,6 @@ pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// The parameters that motions do not support.
 pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
-    Parameter::Damping,
-    Parameter::Viscous,
     Parameter::LoadLag,
     Parameter::VelocityLag,
     Parameter::SensorLag,
@@ -131,7 +129,9 @@ impl Simulation {
             None => Start::State {
                 x_dot0: given(Parameter::XDot0).unwrap_or((1.0 + self.disturbance) * v0),
                 a0: given(Parameter::A0).unwrap_or_else(|| {
-                    law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness())
+                    let lever = oscillator.normal_load() / oscillator.stiffness();
+                    let viscous = setting.get(Parameter::Viscous) / oscillator.stiffness();
+                    law.mu_k(v0) * lever + viscous * v0
                 }),
             },
         };

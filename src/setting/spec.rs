@@ -132,7 +132,7 @@ impl SweepSpec {
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         match self.limit {
-            true => parameter.of_limit(),
+            true => parameter.of_limit() && self.fixed.says(parameter),
             false => self.fixed.uses(parameter),
         }
     }

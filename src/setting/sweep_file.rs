@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
-use super::given::{GivenParameters, read_units};
+use super::given::GivenParameters;
 use super::given_system::GivenSystem;
 use super::keys::{SIMULATION, SWEEP, names};
 use super::map_names::MOST_AXES;
@@ -20,6 +20,7 @@ use super::spec::SweepSpec;
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
+use super::units::read_units;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};

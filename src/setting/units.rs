@@ -1,6 +1,9 @@
-//! The units of a sweep.
+//! The units of a sweep, and the table `[units]` of a file.
 
+use super::keys::{UNITS, names};
 use super::parameter::Parameter;
+use crate::text::nearest::did_you_mean;
+use crate::text::toml_reader::{Entry, SpecError};
 
 /// The units of a sweep; without any, all numbers are dimensionless.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -121,6 +124,40 @@ impl Units {
             Some([_, _, time]) => format!("rad {time}-1"),
             None => "1".into(),
         }
+    }
+}
+
+fn read_unit(entry: &Entry) -> Result<String, SpecError> {
+    let name = entry.string()?;
+    Units::check_name(name).map_err(|why| entry.error(why))?;
+    Ok(name.to_owned())
+}
+
+/// Reads the table `[units]`.
+pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
+    if !units.is_table() {
+        let name = units.string()?;
+        return Units::preset(name).ok_or_else(|| {
+            let meant = did_you_mean(name, Units::PRESETS);
+            let known = Units::PRESETS.join(", ");
+            units
+                .error(format!("unknown units \"{name}\""))
+                .help(format!(
+                    "{meant}known: {known}; or a table of force, length and time"
+                ))
+        });
+    }
+    let mut table = units.document(names(&UNITS))?;
+    let [force, length, time] = ["force", "length", "time"].map(|key| table.take(key, read_unit));
+    table.finish()?;
+    match (force, length, time) {
+        (Some(force), Some(length), Some(time)) => Ok(Units {
+            force_length_time: Some([force, length, time]),
+        }),
+        _ => Err(SpecError::at(
+            units.key_span.clone(),
+            "units: force, length and time are needed, all three",
+        )),
     }
 }
 

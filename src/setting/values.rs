@@ -226,8 +226,14 @@ impl Setting {
             Subject::Block(law) => parameter.of_start() || Self::takes(law.as_ref(), parameter),
             Subject::File(_) => self.others().contains(&parameter),
         };
+        taken && self.says(parameter)
+    }
+
+    /// Whether a parameter has a value, and is not absent by that.
+    pub(super) fn says(&self, parameter: Parameter) -> bool {
         let value = self.get(parameter);
-        taken && !value.is_nan() && !(parameter.absent_at_zero() && value == 0.0)
+        let absent = parameter.absent_by_default() && parameter.default_value() == Some(value);
+        !value.is_nan() && !absent
     }
 
     /// The first of these parameters with which the setting goes beyond the letter's own system.

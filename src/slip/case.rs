@@ -5,7 +5,9 @@ use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
-use crate::model::{Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint};
+use crate::model::{
+    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint,
+};
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
 ///
@@ -182,7 +184,10 @@ impl Case {
     pub fn initial_state(&self) -> (f64, f64) {
         match self.start {
             Start::State { x_dot0, a0 } => (x_dot0, a0),
-            Start::AfterRelease => (0.0, self.law.mu_s() * self.units().length),
+            Start::AfterRelease => {
+                let released = Motion::release_elongation(&self.parameters());
+                (0.0, released * self.units().length)
+            }
         }
     }
 
@@ -196,6 +201,7 @@ impl Case {
         Parameters {
             law: self.law.clone(),
             velocity_unit: units.velocity,
+            dashpots: self.oscillator.dashpot_ratios(),
             feedback: self.feedback.dimensionless(&self.oscillator),
             v0: self.v0 / units.velocity,
             switch_on: match self.feedback.gains.act() {
@@ -207,13 +213,6 @@ impl Case {
 
     fn check(&self) -> Result<(), ModelError> {
         ModelError::positive("v0", self.v0)?;
-        let damped = self.oscillator.dashpot_ratios().sum();
-        ModelError::check(
-            "damping",
-            damped,
-            "0 where motions are followed",
-            damped == 0.0,
-        )?;
         let Feedback {
             gains,
             tau,
@@ -240,6 +239,12 @@ impl Case {
         ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
         let known = latency.is_finite() && latency >= 0.0;
         ModelError::check("latency", latency, "finite and at least 0", known)?;
+        let ActuatorLimits { velocity, load } = self.feedback.limits;
+        let n0 = self.oscillator.normal_load();
+        for (name, value, [least, most]) in [("v0", self.v0, velocity), ("normal_load", n0, load)] {
+            let within = (least..=most).contains(&value);
+            ModelError::check(name, value, "within the limits of its actuator", within)?;
+        }
         let switch_on = self.switch_on;
         if switch_on != f64::INFINITY {
             ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
@@ -312,6 +317,8 @@ impl Case {
             settle_time,
             n_min,
             peak,
+            time_at_limit,
+            share_at_limit,
             period,
             stick_time,
             slip_time,
@@ -325,6 +332,8 @@ impl Case {
             settle_time: settle_time * units.time,
             n_min: n_min * units.force,
             peak: peak * units.force,
+            time_at_limit: time_at_limit * units.time,
+            share_at_limit,
             period: period * units.time,
             stick_time: stick_time * units.time,
             slip_time: slip_time * units.time,

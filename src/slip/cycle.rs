@@ -1,8 +1,8 @@
 //! The uncontrolled cycle of stick and slip, and motions that begin in it: control is switched on
 //! at one of its phases.
 //!
-//! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S) in the units of
-//! [`super::motion`], and without control the future depends on nothing else. So if the block
+//! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S − d v0) in the units
+//! of [`super::motion`], and without control the future depends on nothing else. So if the block
 //! sticks once more, its motion is periodic, and its past over one delay is known at every phase.
 //! With a memory of the feedback the cycles count as having always gone on.
 //!
@@ -101,7 +101,8 @@ pub(crate) fn restart_after_release(
         ..parameters.clone()
     };
     // The block sticks at the limit and is released at once.
-    motion.restart(uncontrolled, accuracy, 0.0, parameters.law.mu_s());
+    let released = Motion::release_elongation(parameters);
+    motion.restart(uncontrolled, accuracy, 0.0, released);
     if motion.advance(LONGEST_SLIP) != Some(Event::Release) {
         return Err(NoCycle::NoStickSlip);
     }
@@ -192,12 +193,13 @@ fn slides(motion: &Motion) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::FrictionLaw;
+    use crate::model::{Dashpots, FrictionLaw};
 
     fn parameters(law: FrictionLaw, v0: f64, tau: f64) -> Parameters {
         Parameters {
             law,
             velocity_unit: 1.0,
+            dashpots: Dashpots::default(),
             feedback: Feedback::new(-0.33, 0.0, tau),
             v0,
             switch_on: 0.0,

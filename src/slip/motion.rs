@@ -1,12 +1,15 @@
 //! The motion of the block: slip, stick and what lies between them.
 //!
 //! In units of √(M/κ) for times, N0/κ for lengths and N0 for forces the letter's Eqs. (1) and (2)
-//! read, with u = ẋ,
+//! read, with u = ẋ and the dashpots d and g, which the letter lacks,
 //!
 //! ```text
-//! u̇ = a − sgn(u) μ_K(|u|) n    in slip,      u = 0 while |a| < μ_S n    in stick,   (1)
+//! u̇ = a + d ȧ − g u − sgn(u) μ_K(|u|) n    in slip,                                     (1)
+//! u = 0 while |a + d ȧ| < μ_S n            in stick,
 //! ȧ = v − u,   v = v0 + α_v S(t),   n = 1 + α_n S(t),   S(t) = a(t) − a(t−τ)          (2)
 //! ```
+//!
+//! with v and n clipped to the limits of the actuators.
 //!
 //! With memory R and latency δ (`feedback`)
 //!
@@ -20,28 +23,33 @@
 //! delayed polynomial ends, if it differs from the next one by more than the tolerance. So steps
 //! end on kinks, one delay after the other, until these are too smooth to matter.
 //!
+//! - `actuators`: v and N held at the limits of their actuators
 //! - `advance`: one step after the other: its length and its end
 //! - `collocated`: steps by collocation: how long they are, the rates there
 //! - `events`: zeros of a step's polynomials, told apart from rounding
+//! - `held`: where a signal is beside the values at which actuators reach their limits
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy
 //! - `stick`: a stuck block whose elongation grows evenly
 //! - `taylor`: steps by Taylor's method
 
+mod actuators;
 mod advance;
 mod collocated;
 mod events;
 mod feedback;
+mod held;
 mod parameters;
 mod stick;
 mod taylor;
 
 use super::collocation::NODES;
 use crate::model::law::FrictionSeries;
+use held::Held;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
 
 use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
-use super::step::{Control, Step};
+use super::step::Step;
 use crate::model::elementary::ln;
 use crate::model::series::{MOST_ORDER, value};
 use crate::model::stop::Stop;
@@ -86,6 +94,8 @@ pub struct Motion {
     /// Since when the block has stuck while its elongation has grown evenly, at the rate of
     /// [`Motion::even_rate`]; +∞ while it does not.
     even_since: f64,
+    /// The limits at which v and N were in the last step.
+    held: Held,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
     stop: Stop,
@@ -149,10 +159,13 @@ impl Motion {
             kink: 1,
             signal_kink: 1,
             even_since: f64::INFINITY,
+            held: Held::default(),
             step,
             stop: Stop::default(),
         };
-        motion.mode = motion.mode_at(1.0);
+        let pulled = motion.parameters.v0 - motion.u;
+        let damping = motion.parameters.dashpots.damping;
+        motion.mode = motion.mode_at(motion.a + damping * pulled, 1.0);
         if motion.mode == Mode::Stick {
             motion.even_since = 0.0;
         }
@@ -237,6 +250,7 @@ impl Motion {
         (self.t, self.u, self.a) = (other.t, other.u, other.a);
         (self.kink, self.signal_kink) = (other.kink, other.signal_kink);
         self.even_since = other.even_since;
+        self.held = other.held;
         self.step.clone_from(&other.step);
     }
 
@@ -304,7 +318,13 @@ impl Motion {
     #[must_use]
     pub fn sliding_elongation(&self) -> f64 {
         let p = &self.parameters;
-        p.law.mu_k(p.v0 * p.velocity_unit)
+        p.law.mu_k(p.v0 * p.velocity_unit) + p.dashpots.viscous * p.v0
+    }
+
+    /// The elongation at which a stuck block without control is released forwards, pulled at v0.
+    #[must_use]
+    pub(crate) fn release_elongation(parameters: &Parameters) -> f64 {
+        parameters.law.mu_s() - parameters.dashpots.damping * parameters.v0
     }
 
     /// What the block does now.
@@ -319,22 +339,22 @@ impl Motion {
         &self.step
     }
 
-    /// The force that a block which has just stopped lacks to move, μ_S n − |a|.
+    /// The force that a block which has just stopped lacks to move, μ_S n − |a + d ȧ|.
     #[must_use]
     pub fn hold_now(&self) -> f64 {
         let n = value(&self.step.n[..=self.step.order], self.step.length);
-        self.parameters.law.mu_s() * n - self.a.abs()
+        self.parameters.law.mu_s() * n - self.step.force_at_end().abs()
     }
 
-    /// The mode of the present state under the load `n`.
-    fn mode_at(&self, n: f64) -> Mode {
+    /// The mode of the present state under the `force` of spring and dashpot and the load `n`.
+    fn mode_at(&self, force: f64, n: f64) -> Mode {
         let moving = if self.u != 0.0 {
             self.u
-        } else if self.a.abs() <= self.parameters.law.mu_s() * n + self.force_noise() {
+        } else if force.abs() <= self.parameters.law.mu_s() * n + self.force_noise() {
             // At the limit stick comes first: whether it lasts is seen from how the forces change.
             return Mode::Stick;
         } else {
-            self.a
+            force
         };
         if moving > 0.0 {
             Mode::Forwards
@@ -342,29 +362,12 @@ impl Motion {
             Mode::Backwards
         }
     }
-
-    fn control(&self, controlled: bool) -> Control {
-        let p = &self.parameters;
-        Control {
-            v0: p.v0,
-            alpha_v: if controlled {
-                p.feedback.gains.alpha_v
-            } else {
-                0.0
-            },
-            alpha_n: if controlled {
-                p.feedback.gains.alpha_n
-            } else {
-                0.0
-            },
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::FrictionLaw;
+    use crate::model::{Dashpots, FrictionLaw};
 
     /// Events of the letter's Fig. 3: times of switch-on, and of what follows.
     fn fig3(
@@ -379,6 +382,7 @@ mod tests {
         let parameters = Parameters {
             law,
             velocity_unit: 1.0,
+            dashpots: Dashpots::default(),
             feedback: Feedback::new(alpha_v, alpha_n, tau),
             v0,
             switch_on: 70.0,

@@ -76,9 +76,13 @@ pub struct Summary {
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,
-    /// The largest spring force |κa| since switch-on; of a motion that diverges, until that was
-    /// known.
+    /// The largest force |κa + cȧ| of spring and dashpot since switch-on; of a motion that
+    /// diverges, until that was known.
     pub peak: f64,
+    /// How long v or N has been at a limit since switch-on; NaN without limits of actuators.
+    pub time_at_limit: f64,
+    /// The share of the time since switch-on for which v or N has been at a limit.
+    pub share_at_limit: f64,
     /// Period of stick-slip; NaN for other outcomes.
     pub period: f64,
     /// Time stuck in one period.
@@ -125,6 +129,8 @@ impl Summary {
             settle_time: f64::NAN,
             n_min: f64::NAN,
             peak: f64::NAN,
+            time_at_limit: f64::NAN,
+            share_at_limit: f64::NAN,
             period: f64::NAN,
             stick_time: f64::NAN,
             slip_time: f64::NAN,
@@ -137,13 +143,15 @@ impl Summary {
     /// Its numbers except the counts of steps and slips, with their names in files and messages.
     /// Numbers that do not exist are NaN.
     #[must_use]
-    pub const fn numbers(&self) -> [(&'static str, f64); 8] {
+    pub const fn numbers(&self) -> [(&'static str, f64); 10] {
         let Self {
             outcome: _,
             decided,
             settle_time,
             n_min,
             peak,
+            time_at_limit,
+            share_at_limit,
             period,
             stick_time,
             slip_time,
@@ -156,6 +164,8 @@ impl Summary {
             ("settle_time", settle_time),
             ("n_min", n_min),
             ("peak_force", peak),
+            ("time_at_limit", time_at_limit),
+            ("share_at_limit", share_at_limit),
             ("period", period),
             ("stick_time", stick_time),
             ("slip_time", slip_time),
@@ -172,6 +182,8 @@ impl Summary {
             settle_time: number("settle_time"),
             n_min: number("n_min"),
             peak: number("peak_force"),
+            time_at_limit: number("time_at_limit"),
+            share_at_limit: number("share_at_limit"),
             period: number("period"),
             stick_time: number("stick_time"),
             slip_time: number("slip_time"),

@@ -1,6 +1,7 @@
 //! One step of a motion: polynomials in the time since its start, how they follow from the
 //! equations, and what can be read off them.
 
+use crate::model::Dashpots;
 use crate::model::law::Series;
 use crate::model::series::{
     Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, spread, value,
@@ -17,6 +18,8 @@ pub struct Step {
     pub(super) u: Coefficients,
     pub(super) a: Coefficients,
     pub(super) n: Coefficients,
+    /// The pull of spring and dashpot, a + d ȧ.
+    pub(super) force: Coefficients,
     /// a(t−τ), less R S(t−τ) where the feedback has memory.
     pub(super) delayed: Coefficients,
     /// S(t) where the feedback has a latency; else meaningless.
@@ -34,6 +37,7 @@ impl Step {
         u: [0.0; MOST_ORDER + 1],
         a: [0.0; MOST_ORDER + 1],
         n: [0.0; MOST_ORDER + 1],
+        force: [0.0; MOST_ORDER + 1],
         delayed: [0.0; MOST_ORDER + 1],
         late: [0.0; MOST_ORDER + 1],
         is_late: false,
@@ -66,6 +70,18 @@ impl Step {
             true => value(&self.late, s),
             false => at(&self.a) - at(&self.delayed),
         }
+    }
+
+    /// S, as far as the order of the step.
+    pub(super) fn signal(&self) -> Coefficients {
+        if self.is_late {
+            return self.late;
+        }
+        let mut signal = self.a;
+        for (signal, delayed) in signal.iter_mut().zip(&self.delayed) {
+            *signal -= delayed;
+        }
+        signal
     }
 
     /// S at the start of a step from the elongation `a`.
@@ -101,10 +117,15 @@ impl Step {
         -largest(Self::range(&flipped, self.order), self.length, -known)
     }
 
-    /// The larger one of `known` and the largest |a| of the step.
+    /// The larger one of `known` and the largest force of the step, |a + d ȧ|.
     #[must_use]
-    pub(crate) fn largest_elongation(&self, known: f64) -> f64 {
-        self.farthest(&self.a, 0.0, known)
+    pub(crate) fn largest_force(&self, known: f64) -> f64 {
+        self.farthest(&self.force, 0.0, known)
+    }
+
+    /// a + d ȧ at the end of the step.
+    pub(super) fn force_at_end(&self) -> f64 {
+        value(Self::range(&self.force, self.order), self.length)
     }
 
     /// The largest |ẋ − `v0`| or |a − `rest`| of the step, or `known` if that is larger.
@@ -152,16 +173,19 @@ impl Step {
     }
 }
 
-/// v0 and the gains that act in a step.
+/// What acts in a step: v = `v0` + `alpha_v` S and n = `load` + `alpha_n` S, and the dashpots. An
+/// actuator at a limit has that limit and no gain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Control {
     pub v0: f64,
+    pub load: f64,
     pub alpha_v: f64,
     pub alpha_n: f64,
+    pub dashpots: Dashpots,
 }
 
 impl Step {
-    /// Fills coefficient `k` of the load, and returns that of v.
+    /// Fills coefficient `k` of the load and of the force, and returns that of ȧ.
     #[inline(always)]
     fn controlled(&mut self, control: Control, k: usize) -> f64 {
         let difference = match self.is_late {
@@ -169,20 +193,29 @@ impl Step {
             false => self.a[k] - self.delayed[k],
         };
         let (v0, load) = if k == 0 {
-            (control.v0, 1.0)
+            (control.v0, control.load)
         } else {
             (0.0, 0.0)
         };
         self.n[k] = load + control.alpha_n * difference;
-        v0 + control.alpha_v * difference
+        let rate = v0 + control.alpha_v * difference - self.u[k];
+        self.force[k] = self.a[k] + control.dashpots.damping * rate;
+        rate
+    }
+
+    /// Fills load and force of a step whose ẋ and a are known.
+    pub(super) fn fill_forces(&mut self, control: Control) {
+        for k in 0..=self.order.min(MOST_ORDER) {
+            self.controlled(control, k);
+        }
     }
 
     /// Computes the coefficients of a stuck block of order 1 and higher.
     pub(super) fn stick(&mut self, control: Control) {
         let order = self.order.min(MOST_ORDER);
         for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
-            self.a[k + 1] = self.controlled(control, k) * per_next;
             self.u[k + 1] = 0.0;
+            self.a[k + 1] = self.controlled(control, k) * per_next;
         }
         self.controlled(control, order);
     }
@@ -191,10 +224,11 @@ impl Step {
     pub(super) fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
         let order = self.order.min(MOST_ORDER);
         for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
-            let pull = self.controlled(control, k);
+            let rate = self.controlled(control, k);
             let friction = series.extend(k, direction * self.u[k], &self.n);
-            self.a[k + 1] = (pull - self.u[k]) * per_next;
-            self.u[k + 1] = (self.a[k] - direction * friction) * per_next;
+            self.a[k + 1] = rate * per_next;
+            let held = direction * friction + control.dashpots.viscous * self.u[k];
+            self.u[k + 1] = (self.force[k] - held) * per_next;
         }
         self.controlled(control, order);
     }

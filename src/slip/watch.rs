@@ -68,6 +68,7 @@ struct Watch {
     outcome: Option<Outcome>,
     n_min: f64,
     peak: f64,
+    time_at_limit: f64,
     unsettled: f64,
     last_release: f64,
     last_stop: f64,
@@ -123,6 +124,10 @@ impl Watch {
             outcome: None,
             n_min: f64::INFINITY,
             peak: 0.0,
+            time_at_limit: match p.feedback.limits.act() {
+                true => 0.0,
+                false => f64::NAN,
+            },
             unsettled: motion.t,
             last_release: f64::NAN,
             last_stop: f64::NAN,
@@ -166,7 +171,10 @@ impl Watch {
         let controlled = start >= self.switch_on || !self.switch_on.is_finite();
         if controlled && finite {
             self.n_min = step.smallest_load(self.n_min);
-            self.peak = step.largest_elongation(self.peak);
+            self.peak = step.largest_force(self.peak);
+            if motion.is_at_limit() {
+                self.time_at_limit += step.length;
+            }
         }
         if motion.outgrows_its_past() {
             self.outcome = Some(Outcome::Undecided);
@@ -325,8 +333,14 @@ impl Watch {
                 Outcome::Sliding => Summary::after(self.switch_on, self.unsettled),
                 _ => f64::NAN,
             },
-            n_min: self.n_min,
+            // A limit is passed by the noise of a step at most.
+            n_min: match motion.parameters().feedback.limits.load {
+                [least, _] if least > 0.0 => self.n_min.max(least),
+                _ => self.n_min,
+            },
             peak: self.peak,
+            time_at_limit: self.time_at_limit,
+            share_at_limit: self.time_at_limit / Summary::after(self.switch_on, motion.t),
             period,
             stick_time: period - slip_time,
             slip_time,
@@ -342,13 +356,14 @@ mod tests {
     use super::*;
     use crate::linear::rightmost::Rightmost;
     use crate::linear::{Crossings, MarginalTolerance};
-    use crate::model::{Feedback, FrictionLaw, Groups};
+    use crate::model::{Dashpots, Feedback, FrictionLaw, Groups};
     use crate::slip::motion::{Accuracy, Parameters};
 
     fn letter(v0: f64, alpha_v: f64, alpha_n: f64, tau: f64) -> Parameters {
         Parameters {
             law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
             velocity_unit: 1.0,
+            dashpots: Dashpots::default(),
             feedback: Feedback::new(alpha_v, alpha_n, tau),
             v0,
             switch_on: 70.0,

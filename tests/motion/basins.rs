@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::program::{Folder, err, expect, out};
 use serde_json::Value;
-use slipmap::model::{Feedback, FrictionLaw};
+use slipmap::model::{Dashpots, Feedback, FrictionLaw};
 use slipmap::setting::SweepSpec;
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
@@ -56,6 +56,7 @@ fn survival_at_the_stop_phase_is_reentrant() {
         let p = Parameters {
             law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
             velocity_unit: 1.0,
+            dashpots: Dashpots::default(),
             feedback: Feedback::new(-0.33, 0.0, 4.15),
             v0,
             switch_on: 0.0,

@@ -7,7 +7,7 @@
 use crate::chance::{Chance, asked};
 use crate::signal::{exponent, samples, slope};
 use slipmap::linear::general::{DelayLine, Polynomial, RootCounter, Spectrum, System};
-use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
+use slipmap::model::{Channel, Dashpots, Feedback, FrictionLaw, Table};
 use slipmap::slip::motion::{Accuracy, Event, Integrator, Motion, Parameters};
 use slipmap::slip::step::Step;
 
@@ -15,6 +15,7 @@ fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, echo: (f64, f64)
     Parameters {
         law,
         velocity_unit: 1.0,
+        dashpots: Dashpots::default(),
         feedback: Feedback::new(gains.0, gains.1, tau).through(Channel {
             memory: echo.0,
             latency: echo.1,

@@ -8,7 +8,7 @@ use crate::signal::{exponent, samples, slope};
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::law::Kind;
-use slipmap::model::{Feedback, FrictionLaw, Groups, Table};
+use slipmap::model::{Dashpots, Feedback, FrictionLaw, Groups, Table};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
 use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary};
 use slipmap::slip::watch::{REPEATED, follow};
@@ -24,6 +24,7 @@ fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, switch_on: f64) 
     Parameters {
         law,
         velocity_unit: 1.0,
+        dashpots: Dashpots::default(),
         feedback: Feedback::new(gains.0, gains.1, tau),
         v0,
         switch_on,

@@ -12,6 +12,7 @@ mod map;
 #[path = "../common/program.rs"]
 mod program;
 
+mod actuators;
 mod cli;
 mod damaged;
 mod export;

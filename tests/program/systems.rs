@@ -2,7 +2,7 @@
 //! carries, mistakes, and what the JSON says of what there is not.
 
 use crate::general_rows::{Row, rows};
-use crate::program::{self, Folder, err, expect, out};
+use crate::program::{Folder, err, expect, out};
 use serde_json::Value;
 
 /// Ends of stable intervals and first crossings agree to this, relative.
@@ -762,7 +762,7 @@ fn h5py_reads_a_map_of_turning() {
     python
         .args(["-c", SCRIPT, "map.h5"])
         .current_dir(folder.path());
-    let output = program::output(&mut python);
+    let output = crate::program::output(&mut python);
     assert!(output.status.success(), "{}", err(&output));
     let read: Value = serde_json::from_str(&out(&output)).unwrap();
     let system: slipmap::setting::system::SystemModel =

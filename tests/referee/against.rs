@@ -3,7 +3,7 @@
 
 use slipmap::critical::switch_on::{Phase, Trials};
 use slipmap::critical::{self, CriticalVelocity, Problem, Regime, critical_velocity};
-use slipmap::model::{Channel, Feedback, FrictionLaw, Table};
+use slipmap::model::{ActuatorLimits, Channel, Dashpots, Feedback, FrictionLaw, Table};
 use slipmap::setting::CaseSpec;
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
@@ -11,7 +11,7 @@ use slipmap::slip::outcome::Outcome;
 use super::asked::{case_file, phase_file, simulate_command, vc_command};
 use super::block::{Block, Event};
 use super::law::{Friction, Law};
-use super::ramp::{self, End, Ramp};
+use super::ramp::{self, Begin, End, Ramp};
 use super::random::Start;
 use super::setting::Setting;
 use super::steps::Pace;
@@ -115,6 +115,17 @@ pub(crate) fn events_of_slipmap(text: &str, horizon: f64) -> Vec<(Event, f64)> {
     events
 }
 
+/// a and ẋ of a case file at a time, by slipmap.
+pub(crate) fn last_state_of_slipmap(text: &str, until: f64) -> (f64, f64) {
+    let spec: CaseSpec = text.parse().expect("a case file");
+    let units = spec.case.units();
+    let mut motion = spec.case.motion().expect("a motion");
+    while motion.t < until / units.time {
+        motion.advance(until / units.time);
+    }
+    (motion.a * units.length, motion.u * units.velocity)
+}
+
 fn named(event: motion::Event) -> Event {
     match event {
         motion::Event::Release => Event::Release,
@@ -125,8 +136,21 @@ fn named(event: motion::Event) -> Event {
     }
 }
 
-/// Two ramps that share neither steps of time nor of v0, nor how long they wait.
-const RAMPS: [(f64, f64, usize); 2] = [(2.0, 0.05, 30), (1.4, 0.03, 60)];
+/// Two ramps that share neither steps of time nor of v0, nor how long they wait, nor how they begin.
+const RAMPS: [Ramp; 2] = [
+    Ramp {
+        pace: Pace::of(2.0),
+        largest: 0.05,
+        stops: 30,
+        begin: Begin::Released,
+    },
+    Ramp {
+        pace: Pace::of(1.4),
+        largest: 0.03,
+        stops: 60,
+        begin: Begin::AtRest,
+    },
+];
 /// The referee's velocity is known where both ramps agree to this.
 const RAMPS_AGREE: f64 = 3e-5;
 /// The difference allowed to slipmap's.
@@ -138,7 +162,7 @@ pub(crate) fn velocity(setting: &Setting) -> Verdict {
     if !found.decided {
         return Verdict::Undecided;
     }
-    let ramps = RAMPS.map(|ramp| ramp_of(setting, ramp));
+    let ramps = RAMPS.map(|ramp| ramp::critical_velocity(setting, ramp));
     let command = vc_command(setting);
     let said = format!("{command}\n# slipmap {found:?}, referee {ramps:?}");
     match ramps[0].is_near(ramps[1], RAMPS_AGREE) && ramps[0] != End::Unfinished {
@@ -148,20 +172,10 @@ pub(crate) fn velocity(setting: &Setting) -> Verdict {
     }
 }
 
-fn ramp_of(setting: &Setting, (share, largest, stops): (f64, f64, usize)) -> End {
-    let pace = Pace::of(share);
-    let ramp = Ramp {
-        pace,
-        largest,
-        stops,
-    };
-    ramp::critical_velocity(setting, ramp)
-}
-
 /// slipmap's critical velocity, and the referee's by its faster ramp, against a known one.
 pub(crate) fn known_velocity(setting: &Setting, expected: End) -> Verdict {
     let found = critical_velocity(&problem(setting));
-    let ramp = ramp_of(setting, RAMPS[0]);
+    let ramp = ramp::critical_velocity(setting, RAMPS[0]);
     let right = |one: End| one.is_near(expected, VELOCITY_ALLOWED);
     match (right(end(&found)), right(ramp)) {
         (true, true) if found.decided => Verdict::Agree(1),
@@ -189,7 +203,20 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
         memory: setting.memory,
         latency: setting.latency,
     });
-    Problem::new(friction_law(&setting.friction), feedback)
+    let feedback = Feedback {
+        limits: ActuatorLimits {
+            velocity: setting.of_v,
+            load: [setting.of_load[0].max(0.0), setting.of_load[1]],
+        },
+        ..feedback
+    };
+    Problem {
+        dashpots: Dashpots {
+            damping: setting.damping,
+            viscous: setting.viscous,
+        },
+        ..Problem::new(friction_law(&setting.friction), feedback)
+    }
 }
 
 fn friction_law(friction: &Friction) -> FrictionLaw {

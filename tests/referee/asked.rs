@@ -33,8 +33,20 @@ fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
     let gains = [("alpha_v", s.alpha_v), ("alpha_n", s.alpha_n)];
     given.extend(gains.into_iter().filter(|(_, x)| *x != 0.0));
     given.push(("tau", s.tau));
-    let echo = [("memory", s.memory), ("latency", s.latency)];
+    let echo = [
+        ("memory", s.memory),
+        ("latency", s.latency),
+        ("damping", s.damping),
+        ("viscous", s.viscous),
+    ];
     given.extend(echo.into_iter().filter(|(_, x)| *x != 0.0));
+    let limits = [
+        ("v_min", s.of_v[0]),
+        ("v_max", s.of_v[1]),
+        ("load_min", s.of_load[0]),
+        ("load_max", s.of_load[1]),
+    ];
+    given.extend(limits.into_iter().filter(|(_, x)| x.is_finite()));
     given
 }
 

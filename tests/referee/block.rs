@@ -1,9 +1,10 @@
 //! The block itself: Runge–Kutta's classical steps of a length that is set beforehand, never by an
 //! estimate of the error.
 //!
-//! M ẍ = κ a − sgn(ẋ) μ_K(|ẋ|) N in slip, ẋ = 0 while |κ a| < μ_S N in stick, ȧ = v − ẋ, v = v0 +
-//! α_v S, N = N0 + α_N S, S = a(t−δ) − a(t−δ−τ) + R S(t−τ). A step ends at every kink of the delayed
-//! elongation and of its echoes, and where the speed passes a point of a table.
+//! M ẍ = κ a + c ȧ − c_g ẋ − sgn(ẋ) μ_K(|ẋ|) N in slip, ẋ = 0 while |κ a + c ȧ| < μ_S N in stick,
+//! ȧ = v − ẋ, v = v0 + α_v S, N = N0 + α_N S, both clipped, S = a(t−δ) − a(t−δ−τ) + R S(t−τ). A
+//! step ends at every kink of the delayed elongation and of its echoes, where the speed passes a
+//! point of a table, and where a command passes a limit.
 //!
 //! With memory or latency V(t) = a(t) − a(t−τ) + R V(t−τ) is kept beside a, from one end of a step
 //! to the next; then S = V(t−δ).
@@ -43,8 +44,17 @@ enum Guard {
     Faster,
     /// What holds a stuck block against a pull in this direction.
     Release(f64),
+    /// The distance of a command from a limit of its actuator, on the side where it is: of v from
+    /// below and above, of N likewise.
+    Limit(usize),
 }
 
+const OF_LIMITS: [Guard; 4] = [
+    Guard::Limit(0),
+    Guard::Limit(1),
+    Guard::Limit(2),
+    Guard::Limit(3),
+];
 const IN_SLIP: [Guard; 4] = [Guard::LiftOff, Guard::Stop, Guard::Slower, Guard::Faster];
 const IN_STICK: [Guard; 3] = [Guard::LiftOff, Guard::Release(1.0), Guard::Release(-1.0)];
 
@@ -58,6 +68,12 @@ struct Look {
     a_rate: f64,
     n: f64,
     n_rate: f64,
+    /// κ a + c ȧ.
+    pull: f64,
+    pull_rate: f64,
+    /// S and its rate; 0 where no control acts.
+    signal: f64,
+    signal_rate: f64,
 }
 
 /// Where the speed passes a point of a table the elongation's kink is as smooth as a third echo.
@@ -79,6 +95,8 @@ pub(crate) struct Block {
     piece: usize,
     controlled: bool,
     stuck_since: f64,
+    /// On which side of each limit its command is: 1 above, −1 below.
+    sides: [f64; 4],
     /// The rate of the elongation at the end of the last step.
     arriving: f64,
 }
@@ -86,11 +104,10 @@ pub(crate) struct Block {
 impl Block {
     /// A block at t = 0 with the elongation `a`, which was `a` at all times before.
     pub(crate) fn at_rest_or_sliding(setting: Setting, pace: Pace, u: f64, a: f64) -> Self {
+        let pull = setting.stiffness * a + setting.damping * (setting.v0 - u);
         let mode = match u == 0.0 {
-            true if (setting.stiffness * a).abs() <= setting.friction.mu_s * setting.load => {
-                Mode::Stick
-            }
-            true => Mode::Slip(a.signum()),
+            true if pull.abs() <= setting.friction.mu_s * setting.load => Mode::Stick,
+            true => Mode::Slip(pull.signum()),
             false => Mode::Slip(u.signum()),
         };
         let pasts = [a, 0.0].map(|value| Past::rising(0.0, value, 0.0));
@@ -101,8 +118,9 @@ impl Block {
     /// before that.
     pub(crate) fn released(setting: Setting, pace: Pace) -> Option<Self> {
         let s = &setting;
-        let load = s.load + s.alpha_n * s.even_signal();
-        let a = s.friction.mu_s * load / s.stiffness;
+        let load = s.n(s.even_signal());
+        let rate = s.v(s.even_signal());
+        let a = (s.friction.mu_s * load - s.damping * rate) / s.stiffness;
         let pasts = [
             Past::rising(0.0, a, s.v0),
             Past::rising(0.0, s.even_signal(), 0.0),
@@ -129,10 +147,32 @@ impl Block {
             a,
             mode,
             stuck_since: 0.0,
+            sides: [1.0; 4],
             arriving: 0.0,
         };
         block.kink(1);
+        block.look_at_limits();
         block
+    }
+
+    /// Notes on which sides of their limits the commands are.
+    fn look_at_limits(&mut self) {
+        let now = self.look(self.t, self.u, self.a);
+        self.sides = std::array::from_fn(|i| match self.beyond(i, &now).0 < 0.0 {
+            true => -1.0,
+            false => 1.0,
+        });
+    }
+
+    /// A command less its limit of this number, and its rate.
+    fn beyond(&self, limit: usize, at: &Look) -> (f64, f64) {
+        let s = &self.setting;
+        let (rest, gain, limits) = match limit < 2 {
+            true => (s.v0, s.alpha_v, s.of_v),
+            false => (s.load, s.alpha_n, s.of_load),
+        };
+        let off = rest + gain * at.signal - limits[limit % 2];
+        (off, gain * at.signal_rate)
     }
 
     /// Changes v0 from now on.
@@ -140,6 +180,7 @@ impl Block {
         self.setting.v0 = v0;
         self.stuck_since = self.t;
         self.kink(1);
+        self.look_at_limits();
     }
 
     /// Control acts from now on.
@@ -148,6 +189,7 @@ impl Block {
         self.setting.switch_on = self.t;
         self.stuck_since = self.t;
         self.kink(1);
+        self.look_at_limits();
     }
 
     /// One step, not beyond `until`, and the event that ends it, if one does.
@@ -176,11 +218,20 @@ impl Block {
         found.and_then(|(guard, _)| self.meet(guard, to.n))
     }
 
-    fn guards(&self) -> &'static [Guard] {
-        match self.mode {
+    fn guards(&self) -> impl Iterator<Item = Guard> {
+        let of_mode: &[Guard] = match self.mode {
             Mode::Stick => &IN_STICK,
             Mode::Slip(_) => &IN_SLIP,
-        }
+        };
+        let s = &self.setting;
+        let limits = [s.of_v, s.of_load].concat();
+        let act = self.controlled;
+        let of_limits = OF_LIMITS.into_iter().zip(limits);
+        let finite = of_limits.filter(move |(_, limit)| act && limit.is_finite());
+        of_mode
+            .iter()
+            .copied()
+            .chain(finite.map(|(guard, _)| guard))
     }
 
     /// A guard's value and rate of change.
@@ -191,7 +242,7 @@ impl Block {
         };
         let (speed, gain) = (sign * at.u, sign * at.u_rate);
         let (lower, upper) = self.setting.friction.bounds(self.piece);
-        let (mu_s, stiffness) = (self.setting.friction.mu_s, self.setting.stiffness);
+        let mu_s = self.setting.friction.mu_s;
         match guard {
             Guard::Stop => (speed, gain),
             Guard::LiftOff => (at.n, at.n_rate),
@@ -199,9 +250,13 @@ impl Block {
             Guard::Slower => (speed - lower, gain),
             Guard::Faster if upper == f64::INFINITY => (upper, 0.0),
             Guard::Faster => (upper - speed, -gain),
+            Guard::Limit(i) => {
+                let (off, rate) = self.beyond(i, at);
+                (self.sides[i] * off, self.sides[i] * rate)
+            }
             Guard::Release(way) => (
-                mu_s * at.n - way * stiffness * at.a,
-                mu_s * at.n_rate - way * stiffness * at.a_rate,
+                mu_s * at.n - way * at.pull,
+                mu_s * at.n_rate - way * at.pull_rate,
             ),
         }
     }
@@ -226,10 +281,22 @@ impl Block {
             a_rate,
             n: s.load,
             n_rate: 0.0,
+            pull: s.stiffness * a + s.damping * a_rate,
+            pull_rate: s.stiffness * a_rate - s.damping * u_rate,
+            signal: 0.0,
+            signal_rate: 0.0,
         };
         if self.controlled {
-            look.n += s.alpha_n * self.fed_back(a, delayed);
-            look.n_rate = s.alpha_n * self.fed_back(a_rate, delayed_rate);
+            look.signal = self.fed_back(a, delayed);
+            look.signal_rate = self.fed_back(a_rate, delayed_rate);
+            look.n = s.n(look.signal);
+            let free = |i: usize| self.sides[2 * i] > 0.0 && self.sides[2 * i + 1] < 0.0;
+            if free(1) {
+                look.n_rate = s.alpha_n * look.signal_rate;
+            }
+            if free(0) {
+                look.pull_rate += s.damping * s.alpha_v * look.signal_rate;
+            }
         }
         look
     }
@@ -286,13 +353,14 @@ impl Block {
             true => self.fed_back(a, delayed),
             false => 0.0,
         };
-        let v = s.v0 + s.alpha_v * difference;
+        let v = s.v(difference);
         let Mode::Slip(sign) = self.mode else {
             return (0.0, v);
         };
-        let n = s.load + s.alpha_n * difference;
+        let n = s.n(difference);
         let friction = s.friction.coefficient(self.piece, sign * u) * n;
-        ((s.stiffness * a - sign * friction) / s.mass, v - u)
+        let pull = s.stiffness * a + s.damping * (v - u);
+        ((pull - s.viscous * u - sign * friction) / s.mass, v - u)
     }
 
     /// The state after a step.
@@ -331,6 +399,7 @@ impl Block {
             Mode::Slip(sign) => {
                 let (law, speed) = (&s.friction, sign * now.u);
                 let growth = (law.slope(self.piece, speed) * now.n / s.mass).abs();
+                let growth = growth + (s.damping + s.viscous) / s.mass;
                 let bend = (now.u_rate / law.reach(self.piece, speed)).abs();
                 self.pace.slipping(s.time(), self.feedback() + growth, bend)
             }
@@ -374,8 +443,8 @@ impl Block {
 
     /// A little more than the time until a guard falls below 0, if all go on as they do.
     fn time_to_guards(&self, now: &Look) -> f64 {
-        let times = self.guards().iter().map(|guard| {
-            let (value, rate) = self.value(*guard, now);
+        let times = self.guards().map(|guard| {
+            let (value, rate) = self.value(guard, now);
             match rate < 0.0 {
                 true => value / -rate,
                 false => f64::INFINITY,
@@ -390,10 +459,10 @@ impl Block {
         for guard in self.guards() {
             let h = first.map_or(to.t, |(_, there)| there.t) - from.t;
             let end = first.map_or(*to, |(_, there)| there);
-            let ends = (self.value(*guard, from), self.value(*guard, &end));
-            let value = |s: f64| self.value(*guard, &self.rk(from, s)).0;
+            let ends = (self.value(guard, from), self.value(guard, &end));
+            let value = |s: f64| self.value(guard, &self.rk(from, s)).0;
             if let Some(s) = first_below(h, ends, from.t, value) {
-                first = Some((*guard, self.rk(from, s)));
+                first = Some((guard, self.rk(from, s)));
             }
         }
         first
@@ -422,19 +491,33 @@ impl Block {
                 self.kink(OF_A_TABLE);
                 None
             }
+            Guard::Limit(i) => {
+                self.sides[i] = -self.sides[i];
+                self.kink(1);
+                None
+            }
             Guard::Release(_) => Some(self.release()),
             Guard::Stop => Some(self.stop(n)),
         }
     }
 
     fn release(&mut self) -> Event {
-        self.mode = Mode::Slip(self.a.signum());
+        self.mode = Mode::Slip(self.pull().signum());
         self.begin();
         Event::Release
     }
 
+    /// κ a + c ȧ of a block at rest now.
+    fn pull(&self) -> f64 {
+        let stuck = Self {
+            mode: Mode::Stick,
+            ..self.clone()
+        };
+        stuck.look(self.t, 0.0, self.a).pull
+    }
+
     fn stop(&mut self, n: f64) -> Event {
-        let pull = self.setting.stiffness * self.a;
+        let pull = self.pull();
         let before = self.mode;
         self.mode = match pull.abs() < self.setting.friction.mu_s * n {
             true => Mode::Stick,

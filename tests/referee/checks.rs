@@ -7,7 +7,7 @@ use super::block::{Block, Event, Mode};
 use super::law::{Friction, Law};
 use super::pchip::Curve;
 use super::ramp::{self, End, Ramp};
-use super::setting::Setting;
+use super::setting::{FREE, Setting};
 use super::steps::Pace;
 use super::switch_on::{self, Fate};
 
@@ -22,6 +22,10 @@ fn setting(law: Law, (alpha_v, alpha_n): (f64, f64), tau: f64, v0: f64) -> Setti
         tau,
         memory: 0.0,
         latency: 0.0,
+        damping: 0.0,
+        viscous: 0.0,
+        of_v: FREE,
+        of_load: FREE,
         v0,
         switch_on: 0.0,
     }
@@ -189,6 +193,7 @@ fn critical_velocities_of_the_letters_figure_3() {
         pace: Pace::of(2.0),
         largest: 0.05,
         stops: 30,
+        begin: ramp::Begin::Released,
     };
     for (gains, tau, expected) in [
         ((-0.33, 0.0), 4.15, 0.344467),

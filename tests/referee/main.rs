@@ -34,7 +34,7 @@ use block::{Block, Event};
 use crowd::{Tally, ask};
 use law::{Friction, Law};
 use random::{Chance, Start};
-use setting::Setting;
+use setting::{FREE, Setting};
 use steps::Pace;
 use switch_on::Fate;
 
@@ -89,6 +89,30 @@ fn motions_with_memory_and_latency() {
     assert!(tally.compared > 8 * tally.asked, "{tally:?}");
 }
 
+/// The same with one dashpot or both.
+#[test]
+fn motions_with_dashpots() {
+    let total = given("SLIPMAP_CASES").map_or(60, |n| n as usize);
+    let tally = ask("motions with dashpots", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0xda5d, number);
+        against::motion(&random::damped(&mut chance))
+    });
+    holds(&tally, 0.03, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
+/// The same with limits of actuators, and here and there dashpots, memory or latency.
+#[test]
+fn motions_with_limits() {
+    let total = given("SLIPMAP_CASES").map_or(60, |n| n as usize);
+    let tally = ask("motions with limits", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x11317, number);
+        against::motion(&random::limited(&mut chance))
+    });
+    holds(&tally, 0.03, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
@@ -102,6 +126,10 @@ fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64
             tau,
             memory: 0.0,
             latency: 0.0,
+            damping: 0.0,
+            viscous: 0.0,
+            of_v: FREE,
+            of_load: FREE,
             v0,
             switch_on: 0.0,
         },
@@ -230,6 +258,10 @@ fn starts_of_basins() {
             tau,
             memory: 0.0,
             latency: 0.0,
+            damping: 0.0,
+            viscous: 0.0,
+            of_v: FREE,
+            of_load: FREE,
             v0,
             switch_on: 0.0,
         };
@@ -298,6 +330,28 @@ fn critical_velocities_with_memory_and_latency() {
     holds(&tally, 0.1, 0.2);
 }
 
+/// The same with one dashpot or both.
+#[test]
+fn critical_velocities_with_dashpots() {
+    let total = tenth_of_cases(12);
+    let tally = ask("critical velocities with dashpots", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0xda50, number);
+        against::velocity(&random::damped_problem(&mut chance))
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
+/// The same with limits of actuators, and here and there dashpots.
+#[test]
+fn critical_velocities_with_limits() {
+    let total = tenth_of_cases(12);
+    let tally = ask("critical velocities with limits", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x11317c, number);
+        against::velocity(&random::limited_problem(&mut chance))
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
 /// What becomes of stick-slip when control is switched on at a phase.
 #[test]
 fn switching_on_by_chance() {
@@ -309,13 +363,30 @@ fn switching_on_by_chance() {
     holds(&tally, 0.1, 0.2);
 }
 
+/// The same with one dashpot or both, and limits.
+#[test]
+fn switching_on_of_a_rig() {
+    let total = tenth_of_cases(30);
+    let tally = ask("phases of switch-on of a rig", total, |number| {
+        let (setting, phase) = random::rig_phase(&mut Chance::of(seed() ^ 0x419, number));
+        against::fate(&setting, phase)
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
 /// Event times of the table, by slipmap at its default tolerance and by this referee.
 #[test]
 fn motions_of_the_reference() {
     let motions = tables::motions();
     assert_eq!(motions.len(), 60);
+    assert_eq!(wrong_events(&motions), [0, 0], "of slipmap and the referee");
+}
+
+/// In how many motions events differ from those expected by more than 1e-7: by slipmap at its
+/// default tolerance, and by this referee.
+fn wrong_events(motions: &[(Start, Vec<Happened>)]) -> [usize; 2] {
     let mut wrong = [0; 2];
-    for (start, expected) in &motions {
+    for (start, expected) in motions {
         let text = asked::case_file(start);
         let slipmap = against::events_of_slipmap(&text, start.horizon);
         let (referee, _) = against::events(start, Pace::of(0.5));
@@ -331,7 +402,40 @@ fn motions_of_the_reference() {
             }
         }
     }
-    assert_eq!(wrong, [0, 0], "of slipmap and of the referee");
+    wrong
+}
+
+/// Events and last states of the motions of `rig_motions.csv`, with dashpots and limits.
+#[test]
+fn motions_of_a_rig() {
+    let motions = tables::rig_motions();
+    assert_eq!(motions.len(), 27);
+    for (start, events, (a, x_dot)) in &motions {
+        if events.iter().any(|(event, _)| *event == Event::LiftOff) {
+            continue;
+        }
+        let text = asked::case_file(start);
+        let found = against::last_state_of_slipmap(&text, start.horizon);
+        let off = (found.0 - a).abs().max((found.1 - x_dot).abs());
+        assert!(off < 1e-7, "{found:?}\n{}", asked::simulate_command(&text));
+    }
+    let events = motions
+        .into_iter()
+        .map(|(start, events, _)| (start, events));
+    let events: Vec<_> = events.collect();
+    assert_eq!(wrong_events(&events), [0, 0], "of slipmap and the referee");
+}
+
+/// Critical velocities of `rig_vc.csv`, with dashpots and limits.
+#[test]
+fn critical_velocities_of_a_rig() {
+    let velocities = tables::rig_velocities();
+    assert_eq!(velocities.len(), 23);
+    let tally = ask("critical velocities of a rig", 23, |row| {
+        let (setting, expected) = &velocities[row];
+        against::known_velocity(setting, *expected)
+    });
+    holds(&tally, 0.0, 0.15);
 }
 
 /// Critical velocities of the table, by slipmap and by this referee.

@@ -15,6 +15,33 @@ pub(crate) struct Ramp {
     pub largest: f64,
     /// The most stops at one v0, while cycles do not repeat.
     pub stops: usize,
+    pub begin: Begin,
+}
+
+/// How the block begins at the first v0. Where both begin in different stick-slip, v_c is more than
+/// one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Begin {
+    /// Released from a stick that has gone on for ever.
+    Released,
+    /// At rest, its spring long stretched to this share of what releases it.
+    AtRest,
+}
+
+/// The share of what releases a block at rest.
+const STRETCHED: f64 = 0.9;
+
+impl Ramp {
+    /// The block at the first v0; none where it lifts off.
+    fn block(&self, setting: Setting) -> Option<Block> {
+        match self.begin {
+            Begin::Released => Block::released(setting, self.pace),
+            Begin::AtRest => {
+                let a = STRETCHED * setting.friction.mu_s * setting.load / setting.stiffness;
+                Some(Block::at_rest_or_sliding(setting, self.pace, 0.0, a))
+            }
+        }
+    }
 }
 
 /// Steps below this, relative, end a ramp. Towards its end stick-slip attracts from less and less
@@ -70,7 +97,7 @@ pub(crate) fn critical_velocity(setting: &Setting, ramp: Ramp) -> End {
     let s = setting;
     let unit = s.friction.mu_s * s.load / (s.stiffness * s.mass).sqrt();
     let mut lifted = f64::INFINITY;
-    for start in STARTS.map(|start| start * unit) {
+    for start in STARTS.map(|start| (start * unit).max(s.of_v[0])) {
         if start > lifted {
             continue;
         }
@@ -80,10 +107,12 @@ pub(crate) fn critical_velocity(setting: &Setting, ramp: Ramp) -> End {
             ..setting.clone()
         };
         // Where a stick that outlasts the delay cannot be, it lifts off.
-        let mut released = Block::released(slow, ramp.pace);
+        let mut released = ramp.block(slow);
         let held = released.as_mut().map(|block| hold(block, ramp.stops));
         match (released, held) {
-            (Some(block), Some(Fate::Sticks)) => return raise(block, ramp, LARGEST * unit),
+            (Some(block), Some(Fate::Sticks)) => {
+                return raise(block, ramp, (LARGEST * unit).min(s.of_v[1]));
+            }
             (None, _) | (_, Some(Fate::LiftsOff)) => lifted = start,
             _ => {}
         }
@@ -112,7 +141,7 @@ fn raise(mut held: Block, ramp: Ramp, largest: f64) -> End {
             };
         }
         let mut trial = held.clone();
-        trial.set_v0(good * (1.0 + step));
+        trial.set_v0((good * (1.0 + step)).min(largest));
         match hold(&mut trial, ramp.stops) {
             Fate::Sticks => {
                 held = trial;

@@ -2,7 +2,7 @@
 
 use super::law::{Friction, Law};
 use super::pchip::Curve;
-use super::setting::Setting;
+use super::setting::{FREE, Setting};
 
 /// Numbers that look random, the same for the same seed.
 pub(crate) struct Chance(u64);
@@ -117,6 +117,10 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
             tau: tau * time,
             memory: 0.0,
             latency: 0.0,
+            damping: 0.0,
+            viscous: 0.0,
+            of_v: FREE,
+            of_load: FREE,
             v0: v0 * length / time,
             switch_on: switch_on * time,
         },
@@ -131,6 +135,53 @@ pub(crate) fn remembering(chance: &mut Chance) -> Start {
     let mut start = start(chance);
     echo(chance, &mut start.setting);
     start
+}
+
+/// A motion with one dashpot or both.
+pub(crate) fn damped(chance: &mut Chance) -> Start {
+    let mut start = start(chance);
+    dashpots(chance, &mut start.setting);
+    start
+}
+
+/// A motion with actuators that have limits, of v, of the load or of both, and perhaps dashpots.
+pub(crate) fn limited(chance: &mut Chance) -> Start {
+    let mut start = start(chance);
+    if chance.below(2) == 0 {
+        dashpots(chance, &mut start.setting);
+    }
+    if chance.below(4) == 0 {
+        echo(chance, &mut start.setting);
+        // Every limit that is passed has an echo in each delay remembered.
+        start.setting.memory *= 0.3;
+    }
+    let (least, most) = (chance.between(-1.0, 1.0), chance.between(1.0, 4.0));
+    limits(chance, &mut start.setting, [least, most]);
+    start
+}
+
+/// Limits of v, these times v0, of the load, or of both.
+fn limits(chance: &mut Chance, setting: &mut Setting, of_v: [f64; 2]) {
+    let which = chance.below(3);
+    let of_load = [
+        [0.05, 0.2, 0.5, 0.9][chance.below(4)],
+        chance.between(1.05, 3.0),
+    ];
+    if which != 1 {
+        setting.of_v = of_v.map(|limit| limit * setting.v0);
+    }
+    if which != 0 {
+        setting.of_load = of_load.map(|limit| limit * setting.load);
+    }
+}
+
+/// Dashpots with damping ratios up to a half.
+fn dashpots(chance: &mut Chance, setting: &mut Setting) {
+    let unit = (setting.stiffness * setting.mass).sqrt();
+    let [damping, viscous] = [0; 2].map(|_| unit * chance.log(0.02, 1.0));
+    let which = chance.below(3);
+    setting.damping = if which == 1 { 0.0 } else { damping };
+    setting.viscous = if which == 0 { 0.0 } else { viscous };
 }
 
 /// Memory, latency or both.
@@ -169,6 +220,10 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
         tau: chance.log(0.05, 10.0),
         memory: 0.0,
         latency: 0.0,
+        damping: 0.0,
+        viscous: 0.0,
+        of_v: FREE,
+        of_load: FREE,
         v0: 1.0,
         switch_on: 0.0,
     }
@@ -181,9 +236,37 @@ pub(crate) fn remembering_problem(chance: &mut Chance) -> Setting {
     setting
 }
 
+/// The same with one dashpot or both.
+pub(crate) fn damped_problem(chance: &mut Chance) -> Setting {
+    let mut setting = problem(chance);
+    dashpots(chance, &mut setting);
+    setting
+}
+
+/// The same with limits of actuators, and perhaps dashpots.
+pub(crate) fn limited_problem(chance: &mut Chance) -> Setting {
+    let mut setting = problem(chance);
+    if chance.below(2) == 0 {
+        dashpots(chance, &mut setting);
+    }
+    // v0 is 1 here; the search goes from small ones to the largest v.
+    let of_v = [chance.between(-1.0, 0.0), chance.log(0.3, 30.0)];
+    limits(chance, &mut setting, of_v);
+    setting
+}
+
 /// A block in uncontrolled stick-slip, and the phase at which control is switched on.
 pub(crate) fn phase(chance: &mut Chance) -> (Setting, f64) {
     let mut setting = problem(chance);
     setting.v0 = chance.log(0.03, 3.0);
     (setting, [0.0, chance.between(0.0, 6.0)][chance.below(2)])
+}
+
+/// The same with dashpots and limits of actuators.
+pub(crate) fn rig_phase(chance: &mut Chance) -> (Setting, f64) {
+    let (mut setting, phase) = phase(chance);
+    dashpots(chance, &mut setting);
+    let of_v = [chance.between(-1.0, 1.0), chance.between(1.0, 4.0)];
+    limits(chance, &mut setting, of_v);
+    (setting, phase)
 }

@@ -15,12 +15,31 @@ pub(crate) struct Setting {
     /// R, the memory of the feedback, and its latency δ.
     pub memory: f64,
     pub latency: f64,
+    /// c, the dashpot beside the spring, and c_g, that to the ground.
+    pub damping: f64,
+    pub viscous: f64,
+    /// What v and N are clipped to, from below and from above.
+    pub of_v: [f64; 2],
+    pub of_load: [f64; 2],
     pub v0: f64,
     /// When control begins to act; infinite for never.
     pub switch_on: f64,
 }
 
+/// No limits.
+pub(crate) const FREE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
 impl Setting {
+    /// v where S is this.
+    pub(crate) fn v(&self, signal: f64) -> f64 {
+        clip(self.v0 + self.alpha_v * signal, self.of_v)
+    }
+
+    /// N where S is this.
+    pub(crate) fn n(&self, signal: f64) -> f64 {
+        clip(self.load + self.alpha_n * signal, self.of_load)
+    }
+
     /// √(M/κ).
     pub(crate) fn time(&self) -> f64 {
         (self.mass / self.stiffness).sqrt()
@@ -44,4 +63,8 @@ impl Setting {
     pub(crate) fn even_signal(&self) -> f64 {
         self.v0 * self.tau / (1.0 - self.memory)
     }
+}
+
+fn clip(commanded: f64, [least, most]: [f64; 2]) -> f64 {
+    commanded.clamp(least, most)
 }

@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-15;
 
 impl Pace {
     /// Of so many times the shares above.
-    pub(crate) fn of(share: f64) -> Self {
+    pub(crate) const fn of(share: f64) -> Self {
         Self { share }
     }
 

@@ -4,7 +4,7 @@ use super::block::Event;
 use super::law::{Friction, Law};
 use super::ramp::End;
 use super::random::Start;
-use super::setting::Setting;
+use super::setting::{FREE, Setting};
 use super::switch_on::Fate;
 
 /// A row by the names of its columns.
@@ -34,10 +34,23 @@ impl Row<'_> {
         word.parse().expect("a number")
     }
 
+    /// A number; 0 where there is no such column or nothing in it.
+    fn or_zero(&self, name: &str) -> f64 {
+        let word = self.word(name).filter(|word| !word.is_empty());
+        word.map_or(0.0, |word| word.parse().expect("a number"))
+    }
+
+    /// Two limits; none where there are no such columns or nothing in them.
+    fn limits(&self, names: [&str; 2]) -> [f64; 2] {
+        let given = |name: &str| self.word(name).filter(|word| !word.is_empty());
+        let limit = |name: &str, none: f64| given(name).map_or(none, |_| self.number(name));
+        [limit(names[0], FREE[0]), limit(names[1], FREE[1])]
+    }
+
     /// The setting of a row; M, κ and N0 are 1, and so is μ_S unless a column says otherwise.
     fn setting(&self) -> Setting {
         let mu0 = self.number("mu0");
-        let law = match self.word("friction_law") {
+        let law = match self.word("friction_law").or(self.word("law")) {
             Some("coulomb") => Law::Coulomb { mu0 },
             Some("weakening") => Law::Weakening {
                 mu0,
@@ -60,10 +73,57 @@ impl Row<'_> {
             tau: self.number("tau"),
             memory: 0.0,
             latency: 0.0,
+            damping: self.or_zero("damping"),
+            viscous: self.or_zero("viscous"),
+            of_v: self.limits(["v_min", "v_max"]),
+            of_load: self.limits(["load_min", "load_max"]),
             v0: self.word("v0").map_or(1.0, |_| self.number("v0")),
-            switch_on: 0.0,
+            switch_on: self.or_zero("switch_on"),
         }
     }
+}
+
+/// The rows of a table whose law is one of the referee's.
+fn with_known_law(table: &str) -> impl Iterator<Item = Row<'_>> {
+    let known = |row: &Row| row.word("law") != Some("formula");
+    rows(table).into_iter().filter(known)
+}
+
+/// A motion of `rig_motions.csv`: its start, its events, and a and ẋ at its end.
+pub(crate) type RigMotion = (Start, Vec<(Event, f64)>, (f64, f64));
+
+/// `rig_motions.csv`: motions with dashpots and limits.
+pub(crate) fn rig_motions() -> Vec<RigMotion> {
+    let motion = |row: Row| {
+        let events = row.word("events").expect("events").split(';');
+        let start = Start {
+            setting: row.setting(),
+            x_dot0: row.number("x_dot0"),
+            a0: row.number("a0"),
+            horizon: row.number("until"),
+        };
+        let last = (row.number("a_end"), row.number("x_dot_end"));
+        (start, events.map(event).collect(), last)
+    };
+    with_known_law(include_str!("../reference/rig_motions.csv"))
+        .map(motion)
+        .collect()
+}
+
+/// `rig_vc.csv`: critical velocities with dashpots and limits.
+pub(crate) fn rig_velocities() -> Vec<(Setting, End)> {
+    let velocity = |row: Row| {
+        let vc = row.number("vc");
+        let end = match row.word("how") {
+            Some("lost") => End::Lost(vc),
+            Some("lift-off") => End::LiftsOff(vc),
+            other => panic!("{other:?}"),
+        };
+        (row.setting(), end)
+    };
+    with_known_law(include_str!("../reference/rig_vc.csv"))
+        .map(velocity)
+        .collect()
 }
 
 /// `motion_events.csv`: starts, and their first events.
@@ -90,7 +150,8 @@ fn event(text: &str) -> (Event, f64) {
         "release" => Event::Release,
         "stick" => Event::Stick,
         "reversal" => Event::Reversal,
-        "liftoff" => Event::LiftOff,
+        "liftoff" | "lift_off" => Event::LiftOff,
+        "switch_on" => Event::SwitchOn,
         other => panic!("{other}"),
     };
     (kind, t.parse().expect("a time"))

@@ -88,7 +88,10 @@ fn parameters(page: &mut String) {
     let rows = Parameter::ALL.into_iter().map(|of| {
         let default = of
             .default_value()
-            .map_or_else(String::new, |v| format!("{v}"));
+            .map_or_else(String::new, |v| match v.is_finite() {
+                true => format!("{v}"),
+                false => "no limit".into(),
+            });
         let flag = of
             .long_flag()
             .map_or_else(String::new, |flag| code(&format!("--{flag}")));

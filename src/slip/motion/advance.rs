@@ -25,6 +25,16 @@ struct Now {
     evenly: bool,
 }
 
+/// What ends a step.
+#[derive(Debug, Clone, Copy)]
+enum End {
+    /// How long it may be.
+    OfLength,
+    Event(Event),
+    /// The elongation has a kink of this order.
+    Kink(u32),
+}
+
 impl Motion {
     /// One step, not beyond `horizon`, and the event that ends it, if one does. A motion that is
     /// told to stop takes no step: its velocity is NaN from then on.
@@ -40,6 +50,7 @@ impl Motion {
             evenly: self.sticks_evenly(),
         };
         let past = self.read_delayed(now);
+        self.hold_actuators(controlled, self.signal_at_start(now));
         let delay = past.first();
         let limit = self.limit(now, &delay, horizon);
         let radius = self.expand_within(now, limit);
@@ -48,30 +59,25 @@ impl Motion {
             return Some(Event::LiftOff);
         }
         let length = self.length(radius, limit, &delay, now);
-        let found = self.first_event(length);
-        let mut length = found.map_or(length, |(s, _)| s);
-        let mut event = found.map(|(_, event)| event);
-        let crossing = self.friction_crossing(length);
-        if let Some(crossing) = &crossing {
-            length = crossing.s;
-            event = None;
-        }
+        let (length, end) = self.first_end(controlled, length);
         let until_switch = self.parameters.switch_on - self.t;
         self.finish(length, radius);
         if self.mode == Mode::Stick {
             self.note_evenness();
         }
-        let switches = event.is_none() && crossing.is_none() && !controlled;
-        let switches = switches && length == until_switch;
-        if switches {
-            self.t = self.parameters.switch_on;
-            event = Some(Event::SwitchOn);
-        }
-        self.kink = match (&crossing, event) {
-            (Some(crossing), _) => crossing.kink,
-            (None, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
-            (None, Some(_)) => 2,
-            (None, None) => SMOOTH,
+        let event = match end {
+            End::OfLength if !controlled && length == until_switch => {
+                self.t = self.parameters.switch_on;
+                Some(Event::SwitchOn)
+            }
+            End::Event(event) => Some(event),
+            _ => None,
+        };
+        self.kink = match (end, event) {
+            (End::Kink(kink), _) => kink,
+            (_, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
+            (_, Some(_)) => 2,
+            (_, None) => SMOOTH,
         };
         if now.echoes {
             self.note_kinks(self.kink, &past, controlled);
@@ -79,6 +85,29 @@ impl Motion {
             self.kink = self.passed_on(delay.kink);
         }
         event.map(|event| self.change_mode(event))
+    }
+
+    /// Where a step that may be this long ends, and by what.
+    fn first_end(&mut self, controlled: bool, length: f64) -> (f64, End) {
+        let (mut length, mut end) = match self.first_event(length) {
+            Some((s, event)) => (s, End::Event(event)),
+            None => (length, End::OfLength),
+        };
+        if let Some((s, kink)) = self.limit_crossing(controlled, length) {
+            (length, end) = (s, End::Kink(kink));
+        }
+        if let Some(crossing) = self.friction_crossing(length) {
+            (length, end) = (crossing.s, End::Kink(crossing.kink));
+        }
+        (length, end)
+    }
+
+    /// S as the step begins.
+    fn signal_at_start(&self, now: Now) -> f64 {
+        match self.even_rate() {
+            Some(rate) if now.controlled && now.evenly => self.even_signal(rate),
+            _ => self.step.fed_back_at_start(self.a),
+        }
     }
 
     /// Ends the motion: a step of no length, after which ẋ is NaN.
@@ -273,7 +302,7 @@ impl Motion {
                 self.u = 0.0;
                 self.even_since = f64::INFINITY;
                 self.friction.restart(0.0);
-                self.mode = if self.a > 0.0 {
+                self.mode = if self.step.force_at_end() > 0.0 {
                     Mode::Forwards
                 } else {
                     Mode::Backwards
@@ -284,7 +313,7 @@ impl Motion {
                 let before = self.mode;
                 self.u = 0.0;
                 self.friction.restart(0.0);
-                self.mode = self.mode_at(n);
+                self.mode = self.mode_at(self.step.force_at_end(), n);
                 if self.mode == Mode::Stick {
                     self.even_since = self.t;
                 }

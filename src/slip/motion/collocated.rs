@@ -1,8 +1,10 @@
 //! Steps of a motion by collocation: how long they are, and what the rates are there.
 
-use super::{Control, Mode, Motion};
+use super::{Mode, Motion};
+use crate::model::Dashpots;
 use crate::model::law::{Series, with_series};
 use crate::slip::collocation::solve;
+use crate::slip::step::Control;
 
 /// The longest step, in units of √(M/κ) and of the time in which rates change by a factor of e.
 const LONGEST: f64 = 0.5;
@@ -17,7 +19,7 @@ impl Motion {
     /// The delayed polynomial has to be filled before.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
-        let load = 1.0 + control.alpha_n * self.step.fed_back_at_start(self.a);
+        let load = control.load + control.alpha_n * self.step.fed_back_at_start(self.a);
         let mut length = self.step_of_scale(control, load).min(limit);
         let reads = self.parameters.feedback.echoes();
         for _ in 0..MOST_TIMES {
@@ -41,6 +43,9 @@ impl Motion {
         let slope = p.law.mu_prime(speed).abs() * p.velocity_unit * load.abs();
         let force =
             self.a.abs() + p.law.mu_s() * (load.abs() + gains * LONGEST) + p.v0.abs() * LONGEST;
+        let dashpots = p.dashpots.sum();
+        let force = force + dashpots * (self.u.abs() + p.v0.abs() + gains * self.a.abs());
+        let slope = slope + dashpots;
         let scale = p.law.speed_scale(speed) / p.velocity_unit;
         (LONGEST / (1.0 + gains + slope)).min(SHARE * scale / force)
     }
@@ -56,12 +61,14 @@ impl Motion {
         let rates = |u: f64, a: f64, past: f64| {
             let difference = if late { past } else { a - past };
             let pull = control.v0 + control.alpha_v * difference;
-            let load = 1.0 + control.alpha_n * difference;
+            let load = control.load + control.alpha_n * difference;
             if direction == 0.0 {
                 (0.0, pull)
             } else {
                 let friction = self.friction_at(direction * u) * load;
-                (a - direction * friction, pull - u)
+                let Dashpots { damping, viscous } = control.dashpots;
+                let force = a + damping * (pull - u);
+                (force - viscous * u - direction * friction, pull - u)
             }
         };
         let past = match late {
@@ -75,13 +82,7 @@ impl Motion {
         let size = self.a.abs().max(self.u.abs()).max(self.parameters.v0);
         let step = &mut self.step;
         (step.order, step.u, step.a) = (order, solved.u, solved.a);
-        for (n, (a, delayed)) in step.n.iter_mut().zip(step.a.iter().zip(&step.delayed)) {
-            *n = control.alpha_n * (a - delayed);
-        }
-        if late {
-            step.n = step.late.map(|late| control.alpha_n * late);
-        }
-        step.n[0] += 1.0;
+        step.fill_forces(control);
         solved.rest <= self.tolerance * size
     }
 

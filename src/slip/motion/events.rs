@@ -55,13 +55,13 @@ impl Motion {
     }
 
     /// The force that holds a stuck block against a pull in `direction` = ±1:
-    /// μ_S n − direction · a.
+    /// μ_S n − direction · (a + d ȧ).
     pub(super) fn hold(&self, direction: f64) -> Coefficients {
         let mu_s = self.parameters.law.mu_s();
         let mut hold = [0.0; MOST_ORDER + 1];
-        let terms = self.step.n.iter().zip(&self.step.a);
-        for (hold, (n, a)) in hold.iter_mut().zip(terms).take(self.step.order + 1) {
-            *hold = mu_s * n - direction * a;
+        let terms = self.step.n.iter().zip(&self.step.force);
+        for (hold, (n, force)) in hold.iter_mut().zip(terms).take(self.step.order + 1) {
+            *hold = mu_s * n - direction * force;
         }
         hold[0] = self.without_noise(hold[0]);
         hold
@@ -102,7 +102,10 @@ impl Motion {
     /// the moment of its release.
     pub(super) fn force_noise(&self) -> f64 {
         let (a, delayed) = (self.step.a[0].abs(), self.step.delayed[0].abs());
-        let load = 1.0 + self.parameters.feedback.gains.alpha_n.abs() * (a + delayed);
-        (ROUNDING + self.tolerance) * (a + self.parameters.law.mu_s() * load)
+        let p = &self.parameters;
+        let load = 1.0 + p.feedback.gains.alpha_n.abs() * (a + delayed);
+        let pull = p.v0.abs() + p.feedback.gains.alpha_v.abs() * (a + delayed);
+        let dashpot = p.dashpots.damping * pull;
+        (ROUNDING + self.tolerance) * (a + dashpot + p.law.mu_s() * load)
     }
 }

@@ -1,6 +1,6 @@
 //! What a motion is given: its parameters, and how exactly it is followed.
 
-use crate::model::{Feedback, FrictionLaw};
+use crate::model::{Dashpots, Feedback, FrictionLaw};
 
 /// What the block does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +35,8 @@ pub struct Parameters {
     pub law: FrictionLaw,
     /// N0/√(κM), the unit of velocity in which the law's speeds are given.
     pub velocity_unit: f64,
+    /// d and g, the dashpots beside the spring and to the ground, in units of √(κM).
+    pub dashpots: Dashpots,
     /// The feedback, without lags.
     pub feedback: Feedback,
     /// v0 √(κM)/N0.

@@ -1,14 +1,16 @@
 //! A stuck block whose elongation grows evenly: its steps have no end but release.
 
 use super::{Motion, ROUNDING};
-use crate::model::Control;
+use crate::model::Feedback;
 use crate::model::series::spread;
+use crate::slip::step::Step;
 
 /// How evenly the elongation of a stuck block has to grow, in units of the error of a step.
 const EVEN: f64 = 0.1;
 
 impl Motion {
-    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ/(1 − R).
+    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ/(1 − R),
+    /// or the limit of v that is next to it.
     /// Other modes of growth die out where α_v τ < 1; else the rate is None.
     ///
     /// With memory or latency they die out where |α_v| τ/(1 − |R|) < 1: a change of ȧ then comes
@@ -23,7 +25,7 @@ impl Motion {
             }
             false => share,
         };
-        (least < 1.0).then(|| p.v0 / (1.0 - share))
+        (least < 1.0).then(|| p.feedback.limits.velocity_of(p.v0 / (1.0 - share)))
     }
 
     /// Whether the elongation of a stuck block has grown evenly, and the signal been constant, for
@@ -35,10 +37,19 @@ impl Motion {
 
     /// Fills the polynomials of a block that sticks evenly, which hold for ever.
     pub(super) fn stick_evenly(&mut self, rate: f64) -> f64 {
-        let Control { alpha_n, .. } = self.parameters.feedback.gains;
+        let Feedback { gains, limits, .. } = self.parameters.feedback;
         let signal = self.even_signal(rate);
+        let damping = self.parameters.dashpots.damping;
         let step = &mut self.step;
-        for c in [&mut step.u, &mut step.a, &mut step.n, &mut step.delayed] {
+        let Step {
+            u,
+            a,
+            n,
+            force,
+            delayed,
+            ..
+        } = step;
+        for c in [u, a, n, force, delayed] {
             c.fill(0.0);
         }
         step.late.fill(0.0);
@@ -46,7 +57,9 @@ impl Motion {
         step.order = 1;
         (step.a[0], step.a[1]) = (self.a, rate);
         (step.delayed[0], step.delayed[1]) = (self.a - signal, rate);
-        step.n[0] = 1.0 + alpha_n * (step.a[0] - step.delayed[0]);
+        let commanded = 1.0 + gains.alpha_n * (step.a[0] - step.delayed[0]);
+        step.n[0] = limits.load_of(commanded);
+        (step.force[0], step.force[1]) = (self.a + damping * rate, rate);
         f64::INFINITY
     }
 

@@ -16,8 +16,8 @@ pub(super) fn fill(plan: &Plan, tile: &Tile, strides: &[usize], buffers: &mut Ti
             setting.vary(&axis.parameter, axis.values[tile.offset[i] + inside[i]]);
         }
         let at = place_of(inside, strides);
-        let [gamma, mu_ratio] = [Parameter::Gamma, Parameter::MuRatio].map(|p| setting.get(p));
-        let Ok(cell) = LimitCell::at(gamma, mu_ratio) else {
+        let [gamma, damping_ratio, mu_ratio] = Parameter::OF_LIMIT.map(|p| setting.get(p));
+        let Ok(cell) = LimitCell::at(gamma, damping_ratio, mu_ratio) else {
             buffers.status[at] = NOT_CONVERGED;
             return;
         };
