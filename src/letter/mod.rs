@@ -8,6 +8,7 @@
 //!
 //! - `stability`, `limits`, `shortest`: linear stability, the letter's Fig. 2; where controls end;
 //!   short delays
+//! - `damping`: velocity control of a damped spring
 //! - `roots`: characteristic roots: their number, bounds and decay
 //! - `motions`: the motions of its Fig. 3, the fate of stick-slip, basins
 //! - `robustness`, `measures`: critical velocities at finite delays; comparison of both controls
@@ -24,6 +25,7 @@
 //!   and read
 
 mod claim;
+mod damping;
 mod kept_picture;
 mod limits;
 mod measures;
@@ -143,12 +145,14 @@ pub(crate) fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterEr
     let shop = &mut workshop;
     shop.look(&stability::SOURCES)?;
     shop.look(&limits::SOURCES)?;
+    shop.look(&damping::SOURCES)?;
     shop.look(&motions::SOURCES)?;
     shop.look(&robustness::SOURCES)?;
     shop.look(&short_delay::SOURCES)?;
     let mut claims = roots::claims(shop)?;
     claims.extend(stability::claims(shop)?);
     claims.extend(limits::claims(shop)?);
+    claims.extend(damping::claims(shop)?);
     claims.extend(motions::claims(shop)?);
     claims.extend(robustness::claims(shop)?);
     claims.extend(short_delay::claims(shop)?);

@@ -62,7 +62,7 @@ fn value(claim: &str, name: &str) -> (f64, f64) {
 
 /// All claims, verdicts, and the value that says most of each: from other programs, closed forms, or, where
 /// nothing else gives it, as it was when it was looked at; and how far off it may be.
-const EXPECTED: [(&str, &str, &str, f64, f64); 28] = [
+const EXPECTED: [(&str, &str, &str, f64, f64); 30] = [
     ("uncontrolled", "confirmed", "weakening", 2.0, 0.0),
     ("finite", "confirmed", "agree", 2000.0, 0.0),
     ("root_bounds", "confirmed", "nearest", 0.954_693_725, 1e-8),
@@ -106,6 +106,20 @@ const EXPECTED: [(&str, &str, &str, f64, f64); 28] = [
         1e-9,
     ),
     ("short_load", "confirmed", "off at 0.0001", 0.0, 1e-8),
+    (
+        "velocity_limit_damped",
+        "refined",
+        "end at zeta 0.1",
+        -0.874_805_275_745,
+        1e-11,
+    ),
+    (
+        "damped_short_delays",
+        "refined",
+        "longest delay at -0.8848",
+        0.023_661,
+        2e-6,
+    ),
     ("fig3a", "confirmed", "last_release", 97.029_009_396, 1e-8),
     ("fig3b", "confirmed", "last_release", 76.277_483_031, 1e-8),
     (
