@@ -50,5 +50,6 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_CASES=2000 tests --test linear chains::
     SLIPMAP_CASES=100000 tests --test linear near_resonance::
     SLIPMAP_CASES=1000 tests --test linear best_general::
+    SLIPMAP_CASES=100 SLIPMAP_GRID=40 SLIPMAP_PLACES=1000 tests --test linear robust_beyond::
 done
 say "$round rounds"

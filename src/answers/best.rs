@@ -4,8 +4,9 @@
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 
+use super::margins::beyond_letter;
 use crate::linear::best::{
-    self, Best, General, Letter, Optimum, Region, Robust, Search, SearchedGain,
+    self, Best, General, Letter, Optimum, Place, Region, Rig, Robust, Search, SearchedGain,
 };
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::ModelError;
@@ -232,13 +233,8 @@ pub fn best_settings(
     stop: &Stop,
 ) -> Result<BestSettings, NoAnswer> {
     let scales = Scales::of(setting, searched)?;
-    let family = gain_of(searched).map(|gain| letter(setting, gain));
-    let found = match family.transpose()? {
-        Some(family) if acting(setting, searched).is_of_letter() => {
-            best::best(&scales.search(family, ranges), stop)
-        }
-        _ => scales.best_of_any(setting, searched, ranges, stop)?,
-    };
+    let letter = gain_of(searched).map(|gain| letter(setting, gain));
+    let found = scales.best(letter.transpose()?, setting, searched, ranges, stop)?;
     Ok(scales.settings(&found, ranges))
 }
 
@@ -256,41 +252,30 @@ pub struct RobustSetting {
 
 /// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
 /// relative errors of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′. None for the latter
-/// where no setting stays stable.
+/// where no setting stays stable. Once `stop` is set, the answer comes soon but is meaningless.
 ///
 /// # Errors
-/// When a parameter of `setting` is outside the model's range, or beyond the letter: there W is not
-/// proved.
+/// As [`best_settings`], and under friction with a state, of which the slope μ′ does not say all.
 pub fn robust_setting(
     setting: &Setting,
     gain: SearchedGain,
     ranges: &Ranges,
     spread: f64,
-) -> Result<(BestSettings, Option<RobustSetting>), ModelError> {
+    stop: &Stop,
+) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
     let searched = parameter_of(gain).into();
     let scales = Scales::of(setting, &searched)?;
-    // Also where the gains of `setting` are 0: they are searched.
-    acting(setting, &searched).check_of_letter(
-        &Parameter::BEYOND_LETTER,
-        "0 where a robust setting is searched for",
-    )?;
-    let search = scales.search(letter(setting, gain)?, ranges);
-    let found = best::best(&search, &Stop::default());
-    let robust = best::robust(&search, &found, spread).map(|robust| {
-        let best = &found.overall;
-        let (worst, proved) = best::worst_around(&search, best.gain, best.tau, spread);
-        RobustSetting {
-            spread,
-            robust: Robust {
-                gain: robust.gain * scales.gain,
-                tau: robust.tau * scales.time,
-                abscissa: robust.abscissa / scales.time,
-                worst_abscissa: robust.worst_abscissa / scales.time,
-                ..robust
-            },
-            worst_of_best: (worst / scales.time, proved),
-        }
-    });
+    setting.check_of_letter(&[], "")?;
+    let letter = letter(setting, gain)?;
+    let found = scales.best(Some(letter), setting, &searched, ranges, stop)?;
+    let rig = Rig {
+        letter,
+        // Also where the gains of `setting` are 0: they are searched.
+        beyond: beyond_letter(&acting(setting, &searched), &setting.oscillator()?),
+    };
+    let search = scales.search(rig, ranges);
+    let robust = best::robust(&search, &found, spread, stop);
+    let robust = robust.map(|robust| scales.robust(&search, &found, &robust, spread, stop));
     Ok((scales.settings(&found, ranges), robust))
 }
 
@@ -300,6 +285,50 @@ impl Scales {
             family,
             gains: scaled(ranges.gain, 1.0 / self.gain),
             delays: scaled(ranges.tau, 1.0 / self.time),
+        }
+    }
+
+    /// The best settings, of the letter's own feedback or of any linear model.
+    fn best(
+        &self,
+        letter: Option<Letter>,
+        setting: &Setting,
+        searched: &Quantity,
+        ranges: &Ranges,
+        stop: &Stop,
+    ) -> Result<Best, NoAnswer> {
+        match letter {
+            Some(family) if acting(setting, searched).is_of_letter() => {
+                Ok(best::best(&self.search(family, ranges), stop))
+            }
+            _ => self.best_of_any(setting, searched, ranges, stop),
+        }
+    }
+
+    /// A robust setting beside the best one.
+    fn robust(
+        &self,
+        search: &Search<Rig>,
+        found: &Best,
+        robust: &Robust,
+        spread: f64,
+        stop: &Stop,
+    ) -> RobustSetting {
+        let best = Place {
+            gain: found.overall.gain,
+            tau: found.overall.tau,
+        };
+        let (worst, proved) = best::worst_around(search, best, spread, stop);
+        RobustSetting {
+            spread,
+            robust: Robust {
+                gain: robust.gain * self.gain,
+                tau: robust.tau * self.time,
+                abscissa: robust.abscissa / self.time,
+                worst_abscissa: robust.worst_abscissa / self.time,
+                ..*robust
+            },
+            worst_of_best: (worst / self.time, proved),
         }
     }
 

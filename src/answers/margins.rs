@@ -6,7 +6,7 @@ use crate::linear::margins::{
     SlidingLaw,
 };
 use crate::model::stop::Stop;
-use crate::model::{Control, Dashpots, Feedback, FrictionLaw, ModelError, Oscillator};
+use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
 use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 
@@ -68,20 +68,12 @@ impl SettingMargins {
         let oscillator = setting.oscillator()?;
         let control = setting.control();
         let groups = oscillator.groups(setting.sliding_point()?, control);
-        let Feedback {
-            tau, channel, lags, ..
-        } = setting.feedback().dimensionless(&oscillator);
         let of = margins::Setting {
             groups,
-            tau,
+            tau: setting.feedback().dimensionless(&oscillator).tau,
             decay: decay * oscillator.time_unit(),
         };
-        let Dashpots { damping, .. } = oscillator.dashpot_ratios();
-        let beyond = (!setting.is_of_letter()).then_some(Beyond {
-            channel,
-            lags,
-            damping,
-        });
+        let beyond = beyond_letter(setting, &oscillator);
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
             case: beyond.map_or_else(
@@ -215,6 +207,17 @@ impl SettingMargins {
         };
         Some((sliding, *v0))
     }
+}
+
+/// What the feedback of a block has beyond the letter's own, dimensionless; none where that is
+/// nothing.
+pub(super) fn beyond_letter(setting: &Setting, oscillator: &Oscillator) -> Option<Beyond> {
+    let Feedback { channel, lags, .. } = setting.feedback().dimensionless(oscillator);
+    (!setting.is_of_letter()).then_some(Beyond {
+        channel,
+        lags,
+        damping: oscillator.dashpot_ratios().damping,
+    })
 }
 
 fn scaled(limits: Limits, by: f64) -> Limits {

@@ -71,8 +71,8 @@ pub(super) struct Args {
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
     tau_to: Option<f64>,
-    /// Also find the setting whose slowest decay is fastest when gain, delay and μ′ may all be off
-    /// by this part of them, such as 0.05
+    /// Also find the setting of a block, whatever its feedback has, whose slowest decay is fastest
+    /// when gain, delay and μ′ may all be off by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
     robust: Option<f64>,
     /// Write the setting (the robust one with --robust), if it is stable, to a file; point and
@@ -147,6 +147,13 @@ impl Args {
         let setting = self.parameters.setting_but(&[gain, Parameter::Tau], help)?;
         let refused = |error: ModelError| self.parameters.refused(&error);
         setting.sliding_point().map_err(refused)?;
+        if self.robust.is_some() && setting.rate_and_state().is_some() {
+            return Err(Failure::bad_input_with_help(
+                "--robust is not known of friction with a state: gain, delay and mu_prime may be \
+                 off, and mu_prime does not tell all of such friction",
+                "leave --robust out, or give --mu-prime or a friction law of the velocity alone",
+            ));
+        }
         let asked = Asked {
             setting,
             units: self.parameters.units(),
@@ -159,15 +166,19 @@ impl Args {
     fn asked_of_system(&self) -> Result<(Asked, Quantity), Failure> {
         let flags = self.parameters.any_but(&OTHERS);
         alone("--system", flags || self.control.is_some())?;
-        for (flag, given) in [
-            ("--robust", self.robust.is_some()),
-            ("--save", self.save.is_some()),
+        let robust = "leave it out: gain, delay and mu_prime may be off, and mu_prime is of a \
+            block on its spring";
+        for (flag, given, help) in [
+            ("--robust", self.robust.is_some(), robust),
+            (
+                "--save",
+                self.save.is_some(),
+                "leave it out: it is for a block on its spring",
+            ),
         ] {
             if given {
-                return Err(Failure::bad_input_with_help(
-                    format!("{flag} is not known of a system from a file"),
-                    "leave it out: it is for a block on its spring",
-                ));
+                let message = format!("{flag} is not known of a system from a file");
+                return Err(Failure::bad_input_with_help(message, help));
             }
         }
         let flag = |parameter| self.parameters.given(parameter);
@@ -276,7 +287,9 @@ impl Args {
     ) -> Result<Recommended, Failure> {
         let (setting, stop) = (&asked.setting, Stop::default());
         let (found, robust) = match self.robust {
-            Some(spread) => robust_setting(setting, self.control().searched(), &ranges, spread)?,
+            Some(spread) => {
+                robust_setting(setting, self.control().searched(), &ranges, spread, &stop)?
+            }
             None => (best_settings(setting, &searched, &ranges, &stop)?, None),
         };
         let (value, tau) = match &robust {

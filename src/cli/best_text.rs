@@ -173,9 +173,16 @@ fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::i
     };
     let units = &told.asked.units;
     let (rate, time) = (unit_behind(&units.rate()), unit_behind(&units.time()));
-    let lost = |worst: f64, abscissa: f64| match worst < 0.0 {
-        true => format!("{:.1} % slower", 100.0 * (1.0 - worst / abscissa)),
-        false => "unstable".into(),
+    let within = |worst: f64, abscissa: f64| {
+        if worst.is_infinite() {
+            return "not known within the spread".into();
+        }
+        let lost = match worst < 0.0 {
+            true if abscissa.is_infinite() => String::new(),
+            true => format!(", {:.1} % slower", 100.0 * (1.0 - worst / abscissa)),
+            false => ", unstable".into(),
+        };
+        format!("{}{rate} within the spread{lost}", short(worst))
     };
     writeln!(
         out,
@@ -188,21 +195,18 @@ fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::i
         short(found.gain) + &told.unit_of_searched(),
     )?;
     row("tau", short(found.tau) + &time)?;
-    row("abscissa", format!("{}{rate}", short(found.abscissa)))?;
-    let worst = format!(
-        "{}{rate} within the spread, {}",
-        short(found.worst_abscissa),
-        lost(found.worst_abscissa, found.abscissa)
-    );
-    row("worst_abscissa", worst)?;
+    let abscissa = match found.abscissa.is_finite() {
+        true => short(found.abscissa) + &rate,
+        false => "not known".into(),
+    };
+    row("abscissa", abscissa)?;
+    row(
+        "worst_abscissa",
+        within(found.worst_abscissa, found.abscissa),
+    )?;
     row("certified", yes_or_no(found.certified).into())?;
     let (worst, _) = of.worst_of_best;
-    let of_best = format!(
-        "{}{rate} within the spread, {}",
-        short(worst),
-        lost(worst, told.found.overall.abscissa)
-    );
-    row("best setting", of_best)
+    row("best setting", within(worst, told.found.overall.abscissa))
 }
 
 /// Margins of the setting that is recommended, and v_c where there is a friction law.

@@ -14,7 +14,7 @@ use num_complex::Complex64;
 
 use super::equation::{Equation, Exact};
 use super::newton::{Root, divide};
-use crate::model::elementary::{norm, sincos};
+use crate::model::elementary::{norm, sincos, sqrt};
 
 /// Sweeps of Aberth's iteration.
 const MOST_SWEEPS: u32 = 60;
@@ -117,4 +117,21 @@ fn listed(equation: impl Equation, tau: f64, at: &[Complex64]) -> Option<Vec<Roo
         error: place.1,
     };
     Some(upper.map(root).collect())
+}
+
+/// Estimates of the roots next to the root `lambda`, by the cubic that touches D there.
+pub(super) fn neighbours(
+    equation: impl Equation,
+    tau: f64,
+    lambda: Complex64,
+) -> impl Iterator<Item = Complex64> {
+    let jet = equation.jet(tau, lambda);
+    let third = equation.third(&jet, tau, lambda);
+    // D′ + D″ s/2 + D‴ s²/6 = 0.
+    let (half, sixth) = (0.5 * jet.second, third / 6.0);
+    let root = sqrt(half * half - 4.0 * sixth * jet.first);
+    [half + root, half - root]
+        .into_iter()
+        .map(move |d| lambda - 2.0 * divide(jet.first, d))
+        .filter(|z| z.re.is_finite() && z.im.is_finite())
 }

@@ -8,11 +8,11 @@
 use num_complex::Complex64;
 
 use super::branches::starting_values;
-use super::cluster::taken_apart;
+use super::cluster::{neighbours, taken_apart};
 use super::collocation::{MOST_NODES, nodes_for};
 use super::equation::Equation;
-use super::newton::{Root, divide, polish};
-use crate::model::elementary::{norm, sqrt};
+use super::newton::{Root, polish};
+use crate::model::elementary::norm;
 use crate::text::Shown;
 
 /// The most attempts at collocation, each with more nodes than the one before.
@@ -141,7 +141,21 @@ impl RootFinder {
     /// # Errors
     /// When roots are missing.
     pub fn abscissa(&mut self, equation: impl Equation, tau: f64) -> Result<f64, Incomplete> {
-        if let Some(found) = self.followed_abscissa(equation, tau) {
+        self.abscissa_up_to(equation, tau, f64::INFINITY)
+    }
+
+    /// The real part of the rightmost root or, where that is above `bound`, of any root above it:
+    /// one that is followed there spares the count.
+    ///
+    /// # Errors
+    /// When roots are missing.
+    pub(in crate::linear) fn abscissa_up_to(
+        &mut self,
+        equation: impl Equation,
+        tau: f64,
+        bound: f64,
+    ) -> Result<f64, Incomplete> {
+        if let Some(found) = self.followed_abscissa(equation, tau, bound) {
             return Ok(found);
         }
         self.rightmost(equation, tau, FOLLOWED as u64, f64::NEG_INFINITY)?;
@@ -152,8 +166,9 @@ impl RootFinder {
         Ok(first.lambda.re)
     }
 
-    /// By the roots that are followed; none where they are not the rightmost ones.
-    fn followed_abscissa(&mut self, equation: impl Equation, tau: f64) -> Option<f64> {
+    /// By the roots that are followed; none where they are not the rightmost ones, and none of them
+    /// is above `bound`.
+    fn followed_abscissa(&mut self, equation: impl Equation, tau: f64, bound: f64) -> Option<f64> {
         if self.followed.is_empty() || tau == 0.0 || equation.uncontrolled() {
             return None;
         }
@@ -162,6 +177,9 @@ impl RootFinder {
         self.polish_starts(equation, tau, f64::NEG_INFINITY);
         self.follow();
         let Root { lambda, error } = *self.roots.first()?;
+        if lambda.re - error > bound {
+            return Some(lambda.re);
+        }
         let line = lambda.re - LEFT_OF_FOLLOWED * (1.0 + lambda.re.abs()) - 16.0 * error;
         let count = equation.right_of(tau, line)?;
         self.roots.retain(|root| root.lambda.re > line);
@@ -304,23 +322,6 @@ fn some_of(cluster: &[Root], number: u64) -> impl Iterator<Item = Root> {
         })
         .collect::<Vec<_>>()
         .into_iter()
-}
-
-/// Estimates of the roots next to the root `lambda`, by the cubic that touches D there.
-fn neighbours(
-    equation: impl Equation,
-    tau: f64,
-    lambda: Complex64,
-) -> impl Iterator<Item = Complex64> {
-    let jet = equation.jet(tau, lambda);
-    let third = equation.third(&jet, tau, lambda);
-    // D′ + D″ s/2 + D‴ s²/6 = 0.
-    let (half, sixth) = (0.5 * jet.second, third / 6.0);
-    let root = sqrt(half * half - 4.0 * sixth * jet.first);
-    [half + root, half - root]
-        .into_iter()
-        .map(move |d| lambda - 2.0 * divide(jet.first, d))
-        .filter(|z| z.re.is_finite() && z.im.is_finite())
 }
 
 /// A little right of where roots accumulate; −∞ where they do not.

@@ -451,7 +451,11 @@ fn what_is_wrong_with_a_search_is_told() {
             "--search-from: zeta = -1",
         ),
         ("best --search k_p --mu-prime -0.1", "--system"),
-        ("best --mu-prime -0.1 --memory 0.3 --robust 0.1", "memory"),
+        (
+            "best --friction rate-and-state --v0 0.1 --mu0 0.6 --v-star 1 --direct-effect 0.01 \
+             --evolution-effect 0.015 --slip-distance 0.1 --robust 0.1",
+            "--robust is not known of friction with a state",
+        ),
     ] {
         let output = folder.run(&args.split(' ').collect::<Vec<_>>());
         assert_eq!(output.status.code(), Some(2), "{args}");

@@ -53,4 +53,6 @@ mod margins_beyond;
 mod near_resonance;
 #[cfg(feature = "cli")]
 mod robust;
+#[cfg(feature = "sweep")]
+mod robust_beyond;
 mod roots;

@@ -2,7 +2,7 @@
 
 use crate::program;
 use slipmap::linear::best::{
-    Best, Letter, Robust, Search, SearchedGain, best, robust, worst_around,
+    Best, Letter, Place, Rig, Robust, Search, SearchedGain, best, robust, worst_around,
 };
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::model::stop::Stop;
@@ -130,15 +130,24 @@ fn check_grid(search: &Search<Letter>, spread: f64, found: Option<&Robust>) {
 fn robust_settings_keep_what_they_promise() {
     let mut found_any = 0;
     for (search, spread) in problems(50) {
-        let regions: Best = best(&search, &Stop::default());
-        let found = robust(&search, &regions, spread);
+        let stop = Stop::default();
+        let regions: Best = best(&search, &stop);
+        let rigs = Search {
+            family: Rig::from(search.family),
+            gains: search.gains,
+            delays: search.delays,
+        };
+        let found = robust(&rigs, &regions, spread, &stop);
         check_grid(&search, spread, found.as_ref());
         let Some(found) = found else { continue };
         found_any += 1;
         check_box(&search, spread, &found);
         // Never worse than the setting of fastest decay within the same spread.
-        let overall = &regions.overall;
-        let (worst, _) = worst_around(&search, overall.gain, overall.tau, spread);
+        let overall = Place {
+            gain: regions.overall.gain,
+            tau: regions.overall.tau,
+        };
+        let (worst, _) = worst_around(&rigs, overall, spread, &stop);
         assert!(
             found.worst_abscissa <= worst + 0.01 * worst.abs(),
             "{found:?} {worst}"
@@ -168,6 +177,14 @@ fn the_program_recommends_robust_settings() {
     assert!(number("/robust/worst_abscissa_of_best") > 0.5 * number("/best/abscissa"));
     assert!(number("/robust/worst_abscissa") < 1.08 * number("/robust/worst_abscissa_of_best"));
     assert!(number("/margins/stability_radius") > 0.4);
+    // With memory, latency and lags too; without a gain of the setting itself.
+    let late =
+        "best --mu-prime=-0.3 --latency 0.1 --memory 0.3 --sensor-lag 0.1 --robust 0.05 --json";
+    let late: Vec<&str> = late.split(' ').collect();
+    let late: serde_json::Value = serde_json::from_str(&program::out(&folder.run(&late))).unwrap();
+    assert_eq!(late["robust"]["certified"], true, "{late}");
+    let worst = late["robust"]["worst_abscissa"].as_f64().unwrap();
+    assert!(worst < late["robust"]["worst_abscissa_of_best"].as_f64().unwrap());
     for (spread, says) in [
         ("0", "a part"),
         ("nan", "a part"),

@@ -45,9 +45,9 @@ impl Frame {
 /// Goes down from `start` by steps from `largest` to `smallest` times the frame's size; the place
 /// reached and the value there. `of` gives the value at a place; where that is above a bound, the
 /// second argument, anything above it does.
-pub(super) fn descend(
+pub(super) fn descend<F>(
     mut of: impl FnMut(Place, f64) -> f64,
-    search: &Search<impl Family>,
+    search: &Search<F>,
     start: Place,
     frame: &Frame,
     (largest, smallest): (f64, f64),

@@ -19,7 +19,7 @@ const DIFFERENCE: f64 = 1e-3;
 /// The least scale of a gain, over the width of what is searched.
 const LEAST_SCALE: f64 = 1e-2;
 /// Steps of counts at one place: where they take more, nothing is known of it.
-const MOST_STEPS: u64 = 1 << 17;
+pub(super) const MOST_STEPS: u64 = 1 << 17;
 /// Delays at which a line without a closed form is counted, and halvings of its ends.
 const SAMPLES: u32 = 256;
 const MOST_HALVINGS: u32 = 60;
@@ -143,6 +143,36 @@ impl General<'_> {
     }
 }
 
+/// The spectral abscissa of the system of `counter` at the delay `tau`, or its supremum where roots
+/// accumulate; infinite where it is not known. Where it is above `bound`, anything above that.
+pub(super) fn abscissa_of(
+    counter: &RootCounter,
+    finder: &mut RootFinder,
+    tau: f64,
+    bound: f64,
+) -> f64 {
+    let system = counter.system();
+    if tau > 0.0 && system.class() == Class::Infinite {
+        return f64::INFINITY;
+    }
+    let found = finder.abscissa_up_to(counter, tau, bound);
+    finder.steps += counter.steps();
+    match found {
+        Ok(found) => return found,
+        Err(_) if tau == 0.0 => return f64::INFINITY,
+        Err(_) => {}
+    }
+    // It may be that no root lies right of where they accumulate. This is asked last: so near
+    // to that line a count takes long.
+    let essential = system.essential_abscissa(tau);
+    let close = |line: f64| beside_essential(line, essential);
+    let close = beside_accumulation(system, tau).is_some_and(close);
+    let before = counter.steps();
+    let nothing = close && nothing_beyond_accumulation(counter, tau).is_some();
+    finder.steps += counter.steps() - before;
+    if nothing { essential } else { f64::INFINITY }
+}
+
 /// The crossings of a line by falling frequency, touches left aside.
 fn crossings(line: &DelayLine) -> impl Iterator<Item = &crate::linear::Crossing> {
     let crossings = line.crossings.iter();
@@ -215,26 +245,7 @@ impl Family for General<'_> {
         let Some(counter) = self.setting(place) else {
             return f64::INFINITY;
         };
-        let (tau, system) = (place.tau, counter.system());
-        if tau > 0.0 && system.class() == Class::Infinite {
-            return f64::INFINITY;
-        }
-        let found = finder.abscissa(&counter, tau);
-        finder.steps += counter.steps();
-        match found {
-            Ok(found) => return found,
-            Err(_) if tau == 0.0 => return f64::INFINITY,
-            Err(_) => {}
-        }
-        // It may be that no root lies right of where they accumulate. This is asked last: so near
-        // to that line a count takes long.
-        let essential = system.essential_abscissa(tau);
-        let close = |line: f64| beside_essential(line, essential);
-        let close = beside_accumulation(system, tau).is_some_and(close);
-        let before = counter.steps();
-        let nothing = close && nothing_beyond_accumulation(&counter, tau).is_some();
-        finder.steps += counter.steps() - before;
-        if nothing { essential } else { f64::INFINITY }
+        abscissa_of(&counter, finder, place.tau, f64::INFINITY)
     }
 
     /// The gains between which the number of crossings changes, halved until they are one, and 0,

@@ -21,6 +21,7 @@
 //! - `letter`: the controlled oscillator over a plane of one of its gains and the delay
 //! - `polish`: Newton's method on those conditions, and the certificate
 //! - `regions`: the stable regions of a box: lobes
+//! - `rig`: a block on its spring whose gains, delay and slope of friction may be off
 //! - `robust`: the setting whose slowest decay over a box of changes is fastest
 //! - `search`: what is searched, and the abscissa at a place of it
 
@@ -31,6 +32,7 @@ mod general;
 mod letter;
 mod polish;
 mod regions;
+mod rig;
 mod robust;
 mod search;
 
@@ -38,6 +40,7 @@ pub use found::{Best, Kind, MOST_REGIONS, Optimum, Region};
 pub use general::General;
 pub use letter::{Letter, SearchedGain};
 pub use regions::{Bound, Stretch};
+pub use rig::Rig;
 pub use robust::{Robust, robust, worst_around};
 pub use search::{ByParameters, Family, Place, Search};
 

@@ -11,12 +11,12 @@
 //! the search goes on with it.
 
 use super::descend::descend;
-use super::letter::Letter;
-use super::search::{Place, Search};
+use super::rig::Rig;
+use super::search::{MOST_STEPS, Place, Search};
 use super::{Best, Start, far_apart, lattice};
-use crate::linear::margins::{Changes, Setting, radius_up_to};
+use crate::linear::margins::Changes;
 use crate::linear::spectrum::RootFinder;
-use crate::model::Groups;
+use crate::model::stop::Stop;
 
 /// The radius, in units of the frame, to which a descent goes.
 const FINE: f64 = 1e-6;
@@ -47,33 +47,50 @@ pub struct Robust {
 
 /// The abscissa over a box around a place.
 struct Worst<'s> {
-    finder: RootFinder,
-    search: &'s Search<Letter>,
+    search: &'s Search<Rig>,
     spread: f64,
-    /// Where the abscissa is looked at, in units of the spread; the place that was worst last comes
-    /// first.
-    places: Vec<Changes>,
+    /// Where the abscissa is looked at; the place that was worst last comes first.
+    places: Vec<Looked>,
+    stop: &'s Stop,
+}
+
+/// A place of the box, where the roots found last lead to those of the next setting.
+struct Looked {
+    /// Where it is, in units of the spread.
+    changes: Changes,
+    finder: RootFinder,
+}
+
+impl Looked {
+    fn at(changes: Changes) -> Self {
+        Self {
+            changes,
+            finder: RootFinder::default(),
+        }
+    }
 }
 
 impl<'s> Worst<'s> {
-    fn new(search: &'s Search<Letter>, spread: f64) -> Self {
+    fn new(search: &'s Search<Rig>, spread: f64, stop: &'s Stop) -> Self {
         let places = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(|n| f64::from(n) - 1.0));
         Self {
-            finder: RootFinder::default(),
             search,
             spread,
-            places: places.collect(),
+            places: places.map(Looked::at).collect(),
+            stop,
         }
     }
 
     /// W and where it is taken; as soon as it is above `bound`, anything above that.
     fn at(&mut self, place: Place, bound: f64) -> (f64, Changes) {
+        if self.ended() {
+            return (f64::INFINITY, [0.0; 3]);
+        }
+        let (rig, spread) = (&self.search.family, self.spread);
         let mut worst = (f64::NEG_INFINITY, 0);
-        for (i, changes) in self.places.iter().enumerate() {
-            let (groups, tau) = self.changed(place, *changes);
-            let roots = self.finder.rightmost(groups, tau, 1, f64::NEG_INFINITY);
-            let abscissa = roots.ok().and_then(|roots| Some(roots.first()?.lambda.re));
-            let abscissa = abscissa.unwrap_or(f64::INFINITY);
+        for (i, Looked { changes, finder }) in self.places.iter_mut().enumerate() {
+            let changes = changes.map(|d| spread * d);
+            let abscissa = rig.changed_abscissa(finder, (place, changes), bound);
             if abscissa > worst.0 {
                 worst = (abscissa, i);
             }
@@ -81,17 +98,16 @@ impl<'s> Worst<'s> {
                 break;
             }
         }
-        let changes = self.places[worst.1];
+        let changes = self.places[worst.1].changes;
         self.places[..=worst.1].rotate_right(1);
-        (worst.0, changes.map(|d| self.spread * d))
+        (worst.0, changes.map(|d| spread * d))
     }
 
-    fn changed(&self, place: Place, changes: Changes) -> (Groups, f64) {
-        let [k, delay, slope] = changes.map(|d| 1.0 + self.spread * d);
-        let Groups { a_v, a_n, .. } = self.search.family.groups(place.gain);
-        let family = &self.search.family;
-        let b = family.slope() * slope + family.dashpots.sum();
-        (Groups::new(b, a_v * k, a_n * k), place.tau * delay)
+    /// Whether the search is to end: nobody waits for it any more, or its work has come to its
+    /// bound. Nothing is known of any place then.
+    fn ended(&self) -> bool {
+        let steps = self.places.iter().map(|looked| looked.finder.steps);
+        self.stop.is_set() || steps.sum::<u64>() > MOST_STEPS
     }
 
     /// Goes down from a start.
@@ -106,12 +122,8 @@ impl<'s> Worst<'s> {
         let (worst, _) = self.at(place, f64::INFINITY);
         for slack in SLACK.into_iter().filter(|_| worst < 0.0) {
             let line = worst * (1.0 - slack);
-            let setting = Setting {
-                groups: self.search.family.groups(place.gain),
-                tau: place.tau,
-                decay: -line,
-            };
-            let radius = radius_up_to(&setting, self.spread, self.search.family.dashpots.sum());
+            let rig = &self.search.family;
+            let radius = rig.radius(place, -line, self.spread, self.stop);
             if radius.proved >= self.spread {
                 return Ok(Some(line));
             }
@@ -123,26 +135,27 @@ impl<'s> Worst<'s> {
     }
 }
 
-/// The largest abscissa over the box of changes around a setting, and whether that is proved.
+/// The largest abscissa over the box of changes around a setting, and whether that is proved;
+/// infinite where it is not known. Once `stop` is set it means nothing.
 #[must_use]
-pub fn worst_around(search: &Search<Letter>, gain: f64, tau: f64, spread: f64) -> (f64, bool) {
-    let mut worst = Worst::new(search, spread);
-    let place = Place { gain, tau };
+pub fn worst_around(search: &Search<Rig>, place: Place, spread: f64, stop: &Stop) -> (f64, bool) {
+    let mut worst = Worst::new(search, spread, stop);
     for _ in 0..MOST_PLACES {
         match worst.proved(place) {
             Ok(Some(bound)) => return (bound, true),
             Ok(None) => break,
-            Err(changes) => worst.places.push(changes),
+            Err(changes) => worst.places.push(Looked::at(changes)),
         }
     }
     (worst.at(place, f64::INFINITY).0, false)
 }
 
 /// The most robust setting of the box of `search`, of those in the stable regions that `best` lists
-/// for it; none where no setting stays stable. 0 ≤ `spread` < 1.
+/// for it; none where no setting stays stable. 0 ≤ `spread` < 1. Once `stop` is set, the answer
+/// comes soon but is meaningless.
 #[must_use]
-pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robust> {
-    let mut worst = Worst::new(search, spread);
+pub fn robust(search: &Search<Rig>, best: &Best, spread: f64, stop: &Stop) -> Option<Robust> {
+    let mut worst = Worst::new(search, spread, stop);
     // No setting of a region is better than its best one.
     let mut regions: Vec<_> = best.regions.iter().collect();
     regions.sort_by(|p, q| p.best.abscissa.total_cmp(&q.best.abscissa));
@@ -180,7 +193,7 @@ impl Worst<'_> {
                     break;
                 }
                 Err(changes) => {
-                    self.places.push(changes);
+                    self.places.push(Looked::at(changes));
                     let (place, value) = self.descend(&start, 0.1);
                     start = Start {
                         value,
@@ -192,18 +205,22 @@ impl Worst<'_> {
         }
         let place = start.place;
         let (value, worst_at) = self.at(place, f64::INFINITY);
-        let groups = self.search.family.groups(place.gain);
-        let roots = self
-            .finder
-            .rightmost(groups, place.tau, 1, f64::NEG_INFINITY);
-        let abscissa = roots.ok().and_then(|roots| Some(roots.first()?.lambda.re));
         Robust {
             gain: place.gain,
             tau: place.tau,
-            abscissa: abscissa.unwrap_or(f64::NAN),
+            abscissa: self.in_the_middle(place),
             worst_abscissa: proof.unwrap_or(value),
             worst_at,
             certified: proof.is_some(),
         }
+    }
+
+    /// The abscissa of a setting itself.
+    fn in_the_middle(&mut self, place: Place) -> f64 {
+        let middle = self.places.iter_mut().find(|at| at.changes == [0.0; 3]);
+        let finder = middle.map(|looked| &mut looked.finder);
+        finder.map_or(f64::INFINITY, |finder| {
+            self.search.family.abscissa(finder, place)
+        })
     }
 }

@@ -124,7 +124,7 @@ impl<F> Search<F> {
 }
 
 /// Steps of counts, with latency, after which a search ends: half a minute at the most.
-const MOST_STEPS: u64 = 1 << 26;
+pub(super) const MOST_STEPS: u64 = 1 << 26;
 
 /// Evaluates the spectral abscissa, keeping its memory from place to place.
 #[derive(Debug, Default)]
