@@ -16,6 +16,7 @@ use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
 use crate::sweep::described::schema;
 use crate::sweep::plan::Plan;
+use crate::sweep::plan::tile::TileGrid;
 use crate::text::in_hexadecimal;
 
 /// The longest wait for the library's lock on a file. A child process that is being started shares
@@ -180,17 +181,18 @@ pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, s
         let Ok(dataset) = map.dataset(name) else {
             continue;
         };
-        if dataset.chunk().as_deref() != Some(plan.tiles.tile_shape()) {
+        let chunk = dataset.chunk().unwrap_or_default();
+        let Some(tiles) = plan.cut_into(&chunk) else {
             let remark =
                 format!("{name}: its chunks are not slipmap's, so its checksum says nothing");
             report.remarks.push(remark);
             continue;
-        }
+        };
         let Ok(expected) = text(&dataset, schema::CHUNKS_SHA256) else {
             without += 1;
             continue;
         };
-        match hash_of_chunks(&dataset, plan, stop) {
+        match hash_of_chunks(&dataset, &tiles, stop) {
             Ok(found) if found == expected => report.checksums += 1,
             Ok(_) => report.faults.push(format!(
                 "{name}: its checksum does not fit: bytes have changed"
@@ -231,15 +233,15 @@ pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, s
     }
 }
 
-fn hash_of_chunks(dataset: &Dataset, plan: &Plan, stop: &AtomicBool) -> hdf5::Result<String> {
+fn hash_of_chunks(dataset: &Dataset, tiles: &TileGrid, stop: &AtomicBool) -> hdf5::Result<String> {
     let chunks = Chunks::of(dataset)?.ok_or("it is not stored in chunks")?;
     let mut hash = Sha256::new();
-    for number in 0..plan.tiles.len() {
+    for number in 0..tiles.len() {
         if stop.load(Ordering::Relaxed) {
             return Err("stopped".into());
         }
         // A missing chunk has not been computed.
-        if let Some(chunk) = chunks.stored(&plan.tiles.tile(number).offset)? {
+        if let Some(chunk) = chunks.stored(&tiles.tile(number).offset)? {
             hash.update(&chunk);
         }
     }

@@ -167,6 +167,47 @@ fn maps_do_not_depend_on_threads_or_tiles() {
     }
 }
 
+/// Critical velocities do not depend on v0, and are searched for once for all of its values. A map
+/// with an axis v0, wherever it stands, has the cells of maps of one v0 each.
+#[test]
+fn an_axis_of_v0_shares_critical_velocities() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = folder.path().join("map.h5");
+    let v0s = [0.02, 0.1, 0.3];
+    let text = |v0s: &[f64], place: usize| {
+        let mut axes = vec!["alpha_n = [-10, -3, 2]".to_owned(), "tau = [0.3, 2]".into()];
+        axes.insert(place, format!("v0 = {v0s:?}"));
+        let axes = axes.join("\n");
+        format!(
+            "fields = [\"abscissa\", \"regime\", \"v_smooth\", {VC}]\nverify = 0\n[axes]\n{axes}\n{LAW}"
+        )
+    };
+    let names = |plan: &Plan| {
+        let fields = plan.spec.fields.iter().map(|field| field.name());
+        fields.chain(["status"]).collect::<Vec<_>>()
+    };
+    let alone = v0s.map(|v0| {
+        let plan = plan(&text(&[v0], 0));
+        write(&plan, 1, &map);
+        names(&plan)
+            .into_iter()
+            .map(|name| bits(&map, name))
+            .collect::<Vec<_>>()
+    });
+    for (place, stride) in [(0, 6), (1, 2), (2, 1)] {
+        let plan = plan(&text(&v0s, place));
+        assert_eq!(plan.tiles.tile_shape()[place], v0s.len());
+        write(&plan, 2, &map);
+        for (field, name) in names(&plan).into_iter().enumerate() {
+            for (cell, found) in bits(&map, name).into_iter().enumerate() {
+                let v0 = cell / stride % v0s.len();
+                let other = cell / (stride * v0s.len()) * stride + cell % stride;
+                assert_eq!(found, alone[v0][field][other], "{name} {place} {cell}");
+            }
+        }
+    }
+}
+
 /// Classes follow from the count, v_c and v0; every other cell or so was recomputed, to the same
 /// answer.
 #[test]

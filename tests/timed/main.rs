@@ -22,6 +22,7 @@ mod server;
 mod faults;
 mod overnight;
 mod serve_beside;
+mod shared_v0;
 mod stops;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -31,14 +31,41 @@ pub(super) struct VcColumns {
     known: Vec<Option<Known>>,
 }
 
-/// An answer, with its question.
+/// An answer, with its question, and what follows from it whatever v0 is.
 struct Known {
     asked: VcProblem,
     phase: f64,
     found: CriticalWindows,
+    /// The velocity of smooth sliding, once a cell has asked for it.
+    v_smooth: Option<f64>,
+    /// Whether simulation disagrees, once a cell of the sample has asked.
+    disputed: Option<bool>,
 }
 
 impl Known {
+    fn new(asked: VcProblem, phase: f64, found: CriticalWindows) -> Self {
+        Self {
+            asked,
+            phase,
+            found,
+            v_smooth: None,
+            disputed: None,
+        }
+    }
+
+    fn v_smooth(&mut self, asked: &VcProblem, v_max: f64) -> f64 {
+        let free = self.found.critical.free_above();
+        let smooth = || asked.v_smooth(free, v_max);
+        *self.v_smooth.get_or_insert_with(smooth)
+    }
+
+    fn disputed(&mut self, asked: &VcProblem) -> bool {
+        let critical = &self.found.critical;
+        let agrees = || asked.simulation_agrees(critical, Integrator::Taylor);
+        let disputed = || agrees() == Some(false);
+        *self.disputed.get_or_insert_with(disputed)
+    }
+
     fn is_of(&self, problem: &Problem, units: &CaseUnits, phase: f64) -> bool {
         self.asked.problem == *problem
             && self.asked.units == *units
@@ -111,11 +138,8 @@ impl VcColumns {
         }
         let found = vc::find_in_line(&problems, &units, || line.stopped());
         for ((i, problem), found) in cells.into_iter().zip(problems).zip(found) {
-            self.known[i] = found.map(|found| Known {
-                asked: VcProblem { problem, units },
-                phase,
-                found,
-            });
+            let asked = VcProblem { problem, units };
+            self.known[i] = found.map(|found| Known::new(asked, phase, found));
         }
     }
 
@@ -127,39 +151,30 @@ impl VcColumns {
         let (tolerance, with_regime, smooth) = (self.tolerance, self.with_regime, self.smooth);
         let sampled = is_sampled(here.number, self.search.verify);
         let phase = here.setting.get(Parameter::SwitchOnPhase);
-        let found = self.found(&asked, protocol, phase, here.i);
-        let free = found.critical.free_above();
-        let mut status = if found.critical.decided {
-            0
-        } else {
-            NOT_CONVERGED
+        let known = self.known(&asked, protocol, phase, here.i);
+        let mut status = match known.found.critical.decided {
+            true => 0,
+            false => NOT_CONVERGED,
         };
         if sampled {
             status |= SAMPLED;
-            let agrees = asked.simulation_agrees(&found.critical, Integrator::Taylor);
-            if agrees == Some(false) {
+            if known.disputed(&asked) {
                 status |= DISAGREE;
             }
         }
         let cell = VcCell {
-            regime: with_regime.then(|| asked.regime_at(v0, protocol, found, tolerance)),
             v_smooth: match smooth {
-                true => asked.v_smooth(free, protocol.v_max()),
+                true => known.v_smooth(&asked, protocol.v_max()),
                 false => f64::NAN,
             },
-            found,
+            regime: with_regime.then(|| asked.regime_at(v0, protocol, &known.found, tolerance)),
+            found: &known.found,
         };
         Ok((cell, status))
     }
 
     /// The answer for the `i`-th cell of a line.
-    fn found(
-        &mut self,
-        asked: &VcProblem,
-        protocol: Protocol,
-        phase: f64,
-        i: usize,
-    ) -> &CriticalWindows {
+    fn known(&mut self, asked: &VcProblem, protocol: Protocol, phase: f64, i: usize) -> &mut Known {
         if self.known.len() <= i {
             self.known.resize_with(i + 1, || None);
         }
@@ -168,12 +183,7 @@ impl VcColumns {
         if known.as_ref().is_some_and(|k| !of_this(k)) {
             *known = None;
         }
-        let known = known.get_or_insert_with(|| Known {
-            asked: asked.clone(),
-            phase,
-            found: asked.find(protocol),
-        });
-        &known.found
+        known.get_or_insert_with(|| Known::new(asked.clone(), phase, asked.find(protocol)))
     }
 }
 

@@ -18,7 +18,7 @@ use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::setting::parameter::Parameter;
 use crate::sweep::plan::Plan;
-use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
+use crate::sweep::plan::tile::{Tile, for_each_index_along, place_of, strides_of};
 
 /// Computes tiles into its own buffers, which it reuses.
 pub struct Worker<'p> {
@@ -105,7 +105,12 @@ impl<'p> Worker<'p> {
         }
         self.unflagged = whole;
         let mut cut_short = false;
-        for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
+        let Plan {
+            tau_axis,
+            shared_axis,
+            ..
+        } = *self.plan;
+        for_each_index_along(&tile.extent, tau_axis, shared_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
             if let Some(mut one) = self.by_delay.take() {

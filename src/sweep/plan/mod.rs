@@ -20,7 +20,7 @@ use self::pieces::{Piece, Pieces};
 use self::planes_of_curves::NoBoundaries;
 use self::tile::{Tile, TileGrid};
 pub use self::tile_size::BLOCK_OF_DELAYS;
-use self::tile_size::{block, cells_per_tile, tile_shape};
+use self::tile_size::{block, cells_per_tile, shared_along, tile_shape};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
 use crate::setting::axis::Axis;
@@ -67,6 +67,9 @@ pub struct Plan {
     pub tiles: TileGrid,
     /// The axis of delays, if the delay is one.
     pub tau_axis: Option<usize>,
+    /// The axis along which what takes longest in a cell does not change: v0 beside critical
+    /// velocities. Tiles keep it together, and lines that differ along it alone follow one another.
+    pub(crate) shared_axis: Option<usize>,
     /// The axes of the planes in which crossing curves are traced: (parameter, delay).
     pub boundary_plane: Option<(usize, usize)>,
 }
@@ -103,9 +106,14 @@ impl Plan {
             .axes
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
-        let tile_shape = tile_shape(&shape, tau_axis, block(&spec), cells_per_tile);
+        let shared_axis = shared_axis(&spec);
+        let block = block(&spec);
+        let tile = match shared_axis {
+            Some(axis) => shared_along(axis, &shape, tau_axis, block, cells_per_tile),
+            None => tile_shape(&shape, tau_axis, block, cells_per_tile),
+        };
         let boundary_plane = planes_of_curves::of(&spec).ok();
-        let tiles = TileGrid::new(shape, tile_shape);
+        let tiles = TileGrid::new(shape, tile);
         if tiles.len() > MOST_TILES {
             return Err(SpecError::whole(format!(
                 "the map would be cut into {} tiles of {} cells; at most {MOST_TILES} are allowed: \
@@ -118,6 +126,7 @@ impl Plan {
             spec,
             tiles,
             tau_axis,
+            shared_axis,
             boundary_plane,
         };
         let planes = plan.boundary_planes() + plan.best_planes();
@@ -128,6 +137,19 @@ impl Plan {
             )));
         }
         Ok(plan)
+    }
+
+    /// The tiles of this shape, if these are how the map is cut, or how versions cut it that did
+    /// not keep the axis v0 of critical velocities together.
+    #[must_use]
+    pub(crate) fn cut_into(&self, tile: &[usize]) -> Option<Cow<'_, TileGrid>> {
+        if self.tiles.tile_shape() == tile {
+            return Some(Cow::Borrowed(&self.tiles));
+        }
+        self.shared_axis?;
+        let (shape, cells) = (self.shape(), cells_per_tile(&self.spec));
+        let before = tile_shape(shape, self.tau_axis, block(&self.spec), cells);
+        (before == tile).then(|| Cow::Owned(TileGrid::new(shape.to_vec(), before)))
     }
 
     /// Length of each axis, in the order of the map's dimensions.
@@ -347,9 +369,39 @@ impl Plan {
     }
 }
 
+/// The axis v0, if critical velocities are searched for.
+fn shared_axis(spec: &SweepSpec) -> Option<usize> {
+    spec.critical?;
+    spec.axes.iter().position(|a| a.parameter == Parameter::V0)
+}
+
 fn put_numbers(hash: &mut Sha256, values: &[f64]) {
     hash.update((values.len() as u64).to_le_bytes());
     for value in values {
         hash.update(value.to_bits().to_le_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CRITICAL: &str = "fields = [\"vc\", \"n_unstable\"]\n[axes]\nv0 = [0.1, 0.2, 0.3]\n\
+        tau = { from = 1, to = 9, points = 300 }\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
+
+    /// Tiles keep all v0 of critical velocities together. Versions that did not are known by their
+    /// tiles.
+    #[test]
+    fn an_axis_of_v0_is_shared_by_critical_velocities_alone() {
+        let plan = |text: &str| Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap();
+        let critical = plan(CRITICAL);
+        assert_eq!(critical.tiles.tile_shape(), [3, 128]);
+        let tiles = |shape: &[usize]| critical.cut_into(shape).map(|tiles| tiles.len());
+        assert_eq!(tiles(&[3, 128]), Some(3));
+        assert_eq!(tiles(&[1, 128]), Some(9));
+        assert_eq!(tiles(&[2, 128]), None);
+        let counted = plan(&CRITICAL.replace("\"vc\", ", ""));
+        assert_eq!(counted.shared_axis, None);
+        assert!(counted.cut_into(&[1, 128]).is_none());
     }
 }

@@ -123,28 +123,30 @@ pub(crate) fn index_of(number: u64, shape: &[usize]) -> Vec<usize> {
 }
 
 /// Every index of a box, last axis fastest; `skip` names an axis that stays at 0.
-pub(crate) fn for_each_index(
+pub(crate) fn for_each_index(extent: &[usize], skip: Option<usize>, visit: impl FnMut(&[usize])) {
+    for_each_index_along(extent, skip, None, visit);
+}
+
+/// Every index of a box, first along the axis `fastest`, then the last axis fastest; `skip` names
+/// an axis that stays at 0.
+pub(crate) fn for_each_index_along(
     extent: &[usize],
     skip: Option<usize>,
+    fastest: Option<usize>,
     mut visit: impl FnMut(&[usize]),
 ) {
+    let others = (0..extent.len()).rev().filter(|&a| Some(a) != fastest);
+    let axes = fastest.into_iter().chain(others);
+    let axes: Vec<usize> = axes.filter(|&a| Some(a) != skip).collect();
     let mut index = vec![0; extent.len()];
     loop {
         visit(&index);
-        let mut axis = extent.len();
-        loop {
-            if axis == 0 {
-                return;
-            }
-            axis -= 1;
-            if Some(axis) == skip {
-                continue;
-            }
-            index[axis] += 1;
-            if index[axis] < extent[axis] {
-                break;
-            }
-            index[axis] = 0;
+        let next = axes.iter().find(|&&axis| {
+            index[axis] = (index[axis] + 1) % extent[axis];
+            index[axis] > 0
+        });
+        if next.is_none() {
+            return;
         }
     }
 }
@@ -175,5 +177,8 @@ mod tests {
         let mut visited = Vec::new();
         for_each_index(&[2, 9, 2], Some(1), |i| visited.push(i.to_vec()));
         assert_eq!(visited, [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
+        visited.clear();
+        for_each_index_along(&[2, 9, 2], Some(1), Some(0), |i| visited.push(i.to_vec()));
+        assert_eq!(visited, [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]);
     }
 }

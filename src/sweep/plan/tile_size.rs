@@ -72,6 +72,24 @@ pub(super) fn tile_shape(
     tile
 }
 
+/// The shape of tiles in which as many cells along `axis` as fit into [`CELLS_PER_TILE`] are
+/// together: lines that differ along it alone share what takes longest in them. Otherwise it is as
+/// if that axis had one cell.
+pub(super) fn shared_along(
+    axis: usize,
+    shape: &[usize],
+    tau_axis: Option<usize>,
+    block: usize,
+    cells: usize,
+) -> Vec<usize> {
+    let mut one = shape.to_vec();
+    one[axis] = 1;
+    let mut tile = tile_shape(&one, tau_axis, block, cells);
+    let rest: usize = tile.iter().product();
+    tile[axis] = part(shape[axis], CELLS_PER_TILE / rest);
+    tile
+}
+
 /// The size of roughly equal parts of `length`, each at most `most` (or 1).
 fn part(length: usize, most: usize) -> usize {
     length.div_ceil(length.div_ceil(most.max(1)))
@@ -110,5 +128,17 @@ mod tests {
         assert_eq!(shape(&[1001, 20_000], Some(1)), [1, 12_288]);
         assert_eq!(tile_shape(&[300, 1000], Some(1), 1, 256), [1, 250]);
         assert_eq!(tile_shape(&[300, 100], Some(1), 1, 256), [2, 100]);
+    }
+
+    /// An axis that is shared is whole in a tile, whatever its place, unless the tile gets too
+    /// large; the other axes are cut as in the map without it.
+    #[test]
+    fn a_shared_axis_is_not_cut() {
+        let shared = |axis, shape: &[usize], tau| shared_along(axis, shape, tau, 128, 64);
+        assert_eq!(shared(0, &[8, 31, 200], Some(2)), [8, 1, 128]);
+        assert_eq!(shared(2, &[31, 200, 8], Some(1)), [1, 128, 8]);
+        assert_eq!(shared(1, &[31, 8, 5], Some(2)), [11, 8, 5]);
+        assert_eq!(shared(1, &[700, 9], None), [64, 9]);
+        assert_eq!(shared(0, &[3000, 128], Some(1)), [1500, 128]);
     }
 }
