@@ -20,7 +20,7 @@ use crate::setting::values::Setting;
 use crate::slip::case::{Case, CaseError, Start};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::{Integrator, Motion};
-use crate::slip::outcome::Outcome;
+use crate::slip::outcome::{Observer, Outcome};
 
 /// 95 % of Student's distribution lie within this many standard errors, if these come from
 /// [`SCRAMBLINGS`] values.
@@ -78,7 +78,7 @@ pub enum Region {
 /// let asked = asked.expect("there is a law");
 /// let (mut follower, mut motion, mut tally) = (asked.follower(), None, Tally::default());
 /// for place in asked.places() {
-///     tally.count(place, follower.follow(place, &mut motion));
+///     tally.count(place, follower.follow(place, &mut motion, &mut ()));
 /// }
 /// let share = tally.share(&[Outcome::Sliding]);
 /// assert!((0.0..=1.0).contains(&share.share) && share.error > 0.0);
@@ -166,6 +166,12 @@ impl BasinProblem {
     #[must_use]
     pub fn horizon(&self) -> f64 {
         self.case.horizon
+    }
+
+    /// The unit of the velocities of its motions, in length/time of the setting.
+    #[must_use]
+    pub(crate) fn velocity_unit(&self) -> f64 {
+        self.case.units().velocity
     }
 
     /// The region of the starts.
@@ -267,8 +273,14 @@ impl Follower<'_> {
         Self { stop, ..self }
     }
 
-    /// The outcome of a start. The memory of another motion is reused if there is one.
-    pub fn follow(&mut self, place: Place, motion: &mut Option<Motion>) -> Outcome {
+    /// The outcome of a start, whose motion is shown to `observer`. The memory of another motion is
+    /// reused if there is one.
+    pub fn follow(
+        &mut self,
+        place: Place,
+        motion: &mut Option<Motion>,
+        observer: &mut impl Observer,
+    ) -> Outcome {
         let [first, second] = self.asked.start(place);
         let case = &mut self.case;
         match self.asked.region {
@@ -293,7 +305,7 @@ impl Follower<'_> {
         // An error here means that the motion cannot be followed.
         begun.map_or(Outcome::Undecided, |motion| {
             motion.heed(&self.stop);
-            case.follow(motion, self.asked.abscissa, &mut ()).outcome
+            case.follow(motion, self.asked.abscissa, observer).outcome
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::setting::case_file::{CaseSpec, Sampling};
 use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
+use crate::slip::speeds::Speeds;
 
 /// The most samples of a trace: some 300 MB.
 pub(crate) const MOST_SAMPLES: usize = 2_000_000;
@@ -135,11 +136,25 @@ impl Trace {
     /// # Errors
     /// As [`Trace::of`], and when it is stopped.
     pub fn within(spec: &CaseSpec, most: Most, stop: &Stop) -> Result<Self, TraceError> {
+        Self::with_speeds(spec, most, stop).map(|(trace, _)| trace)
+    }
+
+    /// As [`Trace::within`], with the speeds that the block reaches until the outcome is known and
+    /// to the end of the trace, in units of the case.
+    ///
+    /// # Errors
+    /// As [`Trace::within`].
+    pub fn with_speeds(
+        spec: &CaseSpec,
+        most: Most,
+        stop: &Stop,
+    ) -> Result<(Self, Speeds), TraceError> {
         let case = &spec.case;
         let longest = most.number();
         let mut listed = Listed {
             units: case.units(),
             events: Vec::new(),
+            speeds: Speeds::default(),
             most: longest,
             stop,
         };
@@ -163,11 +178,13 @@ impl Trace {
         let mut events = recorder.events;
         let both = events.len();
         events.extend(listed.events.into_iter().skip(both));
-        Ok(Self {
+        let speeds = listed.speeds.and(recorder.speeds);
+        let trace = Self {
             samples: recorder.samples.into_vec(),
             events,
             summary,
-        })
+        };
+        Ok((trace, speeds.times(case.units().velocity)))
     }
 
     /// Stretches of time (from, to) in which the block sticks.
@@ -204,10 +221,11 @@ fn sampling(asked: Sampling, until: f64, most: Most) -> Sampling {
     }
 }
 
-/// Collects the events of a motion.
+/// Collects the events and the speeds of a motion.
 struct Listed<'s> {
     units: CaseUnits,
     events: Vec<TraceEvent>,
+    speeds: Speeds,
     most: usize,
     stop: &'s Stop,
 }
@@ -216,6 +234,7 @@ impl Observer for Listed<'_> {
     fn step(&mut self, motion: &Motion, event: Option<Event>) {
         let there = event.map(|kind| physical(motion, kind, self.units));
         self.events.extend(there);
+        self.speeds.step(motion, event);
     }
 
     fn enough(&self) -> bool {
@@ -241,6 +260,7 @@ struct Recorder {
     sampling: Sampling,
     samples: Samples,
     events: Vec<TraceEvent>,
+    speeds: Speeds,
 }
 
 /// One step of the motion, at its beginning.
@@ -263,6 +283,7 @@ impl Recorder {
             sampling,
             samples: Samples::new(most),
             events: Vec::new(),
+            speeds: Speeds::default(),
         })
     }
 
@@ -284,6 +305,7 @@ impl Recorder {
             if self.motion.outgrows_its_past() {
                 return Err(TraceError::OutgrowsPast);
             }
+            self.speeds.step(&self.motion, event);
             let step = self.motion.last_step();
             self.x += step.displacement(step.length);
             self.sample_step(begun);
@@ -403,6 +425,29 @@ mod tests {
         assert!((last.x + last.a - pulled).abs() < 1e-3, "{last:?} {pulled}");
         let stuck = samples.iter().filter(|s| s.mode == Mode::Stick);
         assert!(stuck.clone().count() > 50 && stuck.clone().all(|s| s.x_dot == 0.0));
+    }
+
+    /// The largest speed lies between samples, and the smallest is that of a block that sticks.
+    #[test]
+    fn speeds_are_those_of_the_samples_and_between_them() {
+        let speeds = |text: &str| {
+            let spec: CaseSpec = text.parse().unwrap();
+            let found = Trace::with_speeds(&spec, Most::Refused(MOST_SAMPLES), &Stop::default());
+            let (trace, speeds) = found.unwrap();
+            let samples = trace.samples.iter().map(|sample| sample.x_dot.abs());
+            (samples.fold(0.0, f64::max), speeds)
+        };
+        let (fastest, found) = speeds(FIG3A);
+        assert!(found.least == 0.0 && found.most >= fastest, "{found:?}");
+        assert!(found.most < fastest * (1.0 + 1e-4), "{found:?} {fastest}");
+        let law = "[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
+        let (_, found) = speeds(&format!(
+            "horizon = 9\n[fixed]\nv0 = 2\n{law}[start]\nx_dot0 = 3\n"
+        ));
+        assert!(
+            (found.least - 1.0).abs() < 1e-9 && (found.most - 3.0).abs() < 1e-9,
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
 use crate::explore::basin::{BasinShare, Followed, no_law};
-use crate::report::numbers::{grouped, unit_behind};
+use crate::report::numbers::{grouped, rounded, unit_behind};
 use crate::report::table::write_starts;
 use crate::setting::basin::{Basin, Over};
 use crate::setting::point_file::PointOf;
@@ -19,6 +19,7 @@ use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
+use super::output::warn_beyond_curve;
 use super::parameters::ParameterArgs;
 use super::run::{default_threads, parse_threads};
 use super::say::{self, Rows};
@@ -124,6 +125,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         Followed::of(setting, simulation, basin, threads)
     });
     let followed = followed.map_err(|error| args.refused(&error))?;
+    warn_beyond_curve(followed.beyond_curve(&question.setting, &question.units));
     let share = BasinShare::of(&followed);
     if let Some(to) = output {
         to.write(&signals, "there are no starts", |out, stop| {
@@ -314,8 +316,7 @@ fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), 
 
 /// A number with at most six digits.
 fn six(value: f64) -> String {
-    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
-    format!("{}", Shown(rounded))
+    rounded(value, 5)
 }
 
 /// The kind of starts, in words.

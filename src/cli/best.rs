@@ -23,12 +23,12 @@ use super::best_text;
 use super::cell::alone;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
+use super::output::warn_beyond_curve;
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say::{self, ForPeople};
 use super::setting;
 use super::system_args::{OTHERS, SystemArgs};
-use super::vc;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
@@ -102,7 +102,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let told = args.recommend(asked, searched, ranges)?;
     let (setting, units) = (&told.asked.setting, &told.asked.units);
     if let Some(found) = &told.vc {
-        vc::warn_beyond_curve(setting, found, units);
+        warn_beyond_curve(found.beyond_curve(setting, units));
     }
     if args.json {
         json::print(&args.inputs(&told), &Answer::of(&told))?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::answers::Trace;
 use crate::answers::trace::TraceError;
-use crate::explore::motion::MotionSummary;
+use crate::explore::motion::{Followed, MotionSummary};
 use crate::report::numbers::{grouped, unit_behind};
 use crate::report::picture::{self, Picture, PictureError, PictureOptions};
 use crate::report::table::write_samples;
@@ -140,8 +140,8 @@ fn simulate_to_text(
 
 impl Args {
     fn follow(&self, spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
-        let trace = signals.or_end("there is no trace", || Trace::of(spec));
-        trace.map_err(|error| match error {
+        let followed = signals.or_end("there is no trace", || Followed::whole(spec));
+        let followed = followed.map_err(|error| match error {
             TraceError::TooLong(_) => {
                 let from = match &self.case {
                     Some(case) => case.display().to_string(),
@@ -150,7 +150,9 @@ impl Args {
                 Failure::in_file(spec.too_long(error.to_string()), &from, &spec.text)
             }
             error => failure(&error),
-        })
+        })?;
+        warn_beyond_curve(followed.beyond_curve());
+        Ok(followed.trace)
     }
 
     /// Reads the case.

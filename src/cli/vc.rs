@@ -20,7 +20,7 @@ use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
-use super::output;
+use super::output::warn_beyond_curve;
 use super::parameters::{ParameterArgs, flag};
 use super::say::ForPeople;
 use super::setting::SettingArgs;
@@ -70,7 +70,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
         alone("--map", by_flags || args.parameters.any_but(&[]))?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
-        warn_beyond_curve(&point.setting, &found, &point.units);
+        warn_beyond_curve(found.beyond_curve(&point.setting, &point.units));
         let inputs = inputs(&point.setting, &point.units, point.protocol);
         return print_found(args.json.then_some(&inputs), &found, &point.units);
     }
@@ -97,7 +97,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            warn_beyond_curve(&setting, &found, &units);
+            warn_beyond_curve(found.beyond_curve(&setting, &units));
             let inputs = inputs(&setting, &units, protocol);
             print_found(args.json.then_some(&inputs), &found, &units)
         }
@@ -136,14 +136,6 @@ fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
         (Some(lower), Some(upper)) => format!(", between {lower}{unit} and {upper}{unit}"),
     };
     (!found.decided).then(|| format!("not known{ends}"))
-}
-
-/// Warns if v_c lies beyond the points of a measured friction law.
-pub(super) fn warn_beyond_curve(setting: &Setting, found: &CriticalVelocity, units: &Units) {
-    // 0 is no velocity at which it slides: stick-slip is never sustained.
-    let vc = finite(found.vc).filter(|vc| found.decided && *vc > 0.0);
-    let vc = vc.and_then(|vc| rounded(vc, DIGITS).parse().ok());
-    output::warn_beyond_curve(vc.and_then(|vc| setting.vc_beyond_curve(vc, units)));
 }
 
 /// v_c in a line or two, with the velocity of lift-off.

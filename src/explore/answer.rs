@@ -98,7 +98,7 @@ pub struct Limits {
     pub motion: motion::Limits,
 }
 
-/// An answer with the command line that gives the same.
+/// An answer with the command line that gives the same, and with a warning.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct WithCommand<T> {
@@ -108,6 +108,10 @@ pub struct WithCommand<T> {
     /// The command line; none where flags cannot say it.
     #[cfg_attr(feature = "serve", schema(required))]
     pub command: Option<String>,
+    /// What it assumes of friction at velocities that were not measured; null where it assumes
+    /// nothing.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub warning: Option<String>,
 }
 
 /// A request that has been read and is within limits.
@@ -180,7 +184,7 @@ impl Asked {
                 let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
                 Ok(chart_bytes::encoded(&chart, took)?)
             }
-            Self::Point(PointSpec { setting, .. }) => {
+            Self::Point(PointSpec { setting, units, .. }) => {
                 let wanted = Wanted {
                     roots: ROOTS,
                     line: None,
@@ -194,6 +198,7 @@ impl Asked {
                     answer,
                     command: point_command(setting)
                         .map(|command| format!("{command} --roots={ROOTS}")),
+                    warning: setting.beyond_curve(units),
                 })
             }
             Self::CriticalVelocity(point) => {
@@ -202,8 +207,11 @@ impl Asked {
                 if stop.is_set() {
                     return Err(Problem::stopped());
                 }
-                let command = vc_command(&point.setting, point.protocol);
-                json(&WithCommand { answer, command })
+                json(&WithCommand {
+                    command: vc_command(&point.setting, point.protocol),
+                    warning: answer.beyond_curve(&point.setting, &point.units),
+                    answer,
+                })
             }
             Self::Motion(case, limits) => {
                 let followed = Followed::of(case, *limits, &Stop::when(stop))?;

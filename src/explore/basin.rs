@@ -8,7 +8,9 @@ use crate::answers::basin::{BasinProblem, Place, Region, STUDENT_95, Tally};
 use crate::setting::Setting;
 use crate::setting::basin::{Basin, SCRAMBLINGS};
 use crate::setting::simulation::Simulation;
+use crate::setting::units::Units;
 use crate::slip::outcome::Outcome;
+use crate::slip::speeds::Speeds;
 use crate::sweep::engine::{RunError, each};
 use crate::text::SpecError;
 
@@ -23,6 +25,7 @@ pub struct Followed {
     basin: Basin,
     asked: BasinProblem,
     outcomes: Vec<Outcome>,
+    speeds: Speeds,
 }
 
 impl Followed {
@@ -41,14 +44,24 @@ impl Followed {
         let asked = BasinProblem::of(setting, simulation, basin)?.ok_or_else(no_law)?;
         let begin = || (asked.follower(), None);
         let places: Vec<Place> = asked.places().collect();
-        let outcomes = each(places, threads, begin, |(follower, motion), place| {
-            follower.follow(place, motion)
+        let unit = asked.velocity_unit();
+        let followed = each(places, threads, begin, |(follower, motion), place| {
+            let mut speeds = Speeds::default();
+            (follower.follow(place, motion, &mut speeds), speeds)
         })?;
+        let speeds = followed.iter().map(|(_, speeds)| speeds.times(unit));
         Ok(Self {
             basin: *basin,
             asked,
-            outcomes,
+            speeds: speeds.fold(Speeds::default(), Speeds::and),
+            outcomes: followed.into_iter().map(|(outcome, _)| outcome).collect(),
         })
+    }
+
+    /// A remark on motions that went beyond the points of the measured friction law of `setting`.
+    #[must_use]
+    pub(crate) fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
+        setting.motion_beyond_curve(self.speeds, units)
     }
 
     /// The region of the starts.

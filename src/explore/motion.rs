@@ -5,9 +5,10 @@ use serde::Serialize;
 use crate::answers::Trace;
 use crate::answers::samples::Most;
 use crate::answers::trace::Sample;
-use crate::answers::trace::{TraceError, TraceEvent};
+use crate::answers::trace::{MOST_SAMPLES, TraceError, TraceEvent};
 use crate::model::stop::Stop;
 use crate::setting::CaseSpec;
+use crate::slip::speeds::Speeds;
 
 /// Limits of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub struct Followed {
     pub spec: CaseSpec,
     /// Its samples and events.
     pub trace: Trace,
+    /// The speeds that the block reached, in units of the case.
+    speeds: Speeds,
 }
 
 impl Followed {
@@ -54,15 +57,40 @@ impl Followed {
         let mut spec = case.clone();
         let asked = spec.case.steps;
         spec.case.steps = asked.min(limits.steps);
-        let trace = Trace::within(&spec, Most::Thinned(limits.samples), stop);
-        let trace = trace.map_err(|error| match error {
+        let followed = Trace::with_speeds(&spec, Most::Thinned(limits.samples), stop);
+        let (trace, speeds) = followed.map_err(|error| match error {
             TraceError::TooLong(most) => TraceError::TooManyEvents(most),
             other => other,
         })?;
         if trace.summary.steps >= limits.steps && asked > limits.steps {
             return Err(TraceError::TooManySteps(limits.steps));
         }
-        Ok(Self { spec, trace })
+        Ok(Self {
+            spec,
+            trace,
+            speeds,
+        })
+    }
+
+    /// Follows a case to the end of its trace, whatever that takes.
+    ///
+    /// # Errors
+    /// As [`Trace::of`].
+    pub fn whole(case: &CaseSpec) -> Result<Self, TraceError> {
+        let most = Most::Refused(MOST_SAMPLES);
+        let (trace, speeds) = Trace::with_speeds(case, most, &Stop::default())?;
+        Ok(Self {
+            spec: case.clone(),
+            trace,
+            speeds,
+        })
+    }
+
+    /// A remark on a block that went beyond the points of a measured friction law.
+    #[must_use]
+    pub(crate) fn beyond_curve(&self) -> Option<String> {
+        let CaseSpec { setting, units, .. } = &self.spec;
+        setting.motion_beyond_curve(self.speeds, units)
     }
 }
 

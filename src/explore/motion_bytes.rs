@@ -27,6 +27,10 @@ pub struct MotionHead {
     modes: [&'static str; MODES.len()],
     /// What gives the same, with the text of the request in that file.
     command: &'static str,
+    /// What it assumes of friction at velocities that were not measured; null where it assumes
+    /// nothing.
+    #[cfg_attr(feature = "serve", schema(required))]
+    warning: Option<String>,
 }
 
 /// A quantity of samples.
@@ -95,6 +99,7 @@ pub fn encoded(followed: &Followed) -> Result<Vec<u8>, serde_json::Error> {
         arrays: heads,
         modes: MODES.map(|(_, name)| name),
         command: SIMULATE,
+        warning: followed.beyond_curve(),
     };
     arrays.behind(&head)
 }

@@ -14,6 +14,7 @@ use crate::setting::Setting;
 use crate::setting::field::{Field, OUTCOMES, number_of_outcome};
 use crate::setting::search::{LIMIT, Protocol};
 use crate::setting::source::Source;
+use crate::setting::units::Units;
 
 /// How stick-slip ends, in units of the setting.
 #[derive(Debug, Clone, Serialize)]
@@ -81,6 +82,20 @@ impl CriticalVelocity {
             method: critical.method.name(),
             decided: critical.decided,
         })
+    }
+
+    /// A remark on a critical velocity of `setting`, or the bounds of one that is not decided, or a
+    /// velocity of lift-off, beyond the points of its measured friction law.
+    #[must_use]
+    pub(crate) fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
+        let (of, found) = match self.decided {
+            true if self.vc.is_finite() => ("v_c", vec![self.vc]),
+            true => ("v_liftoff", vec![self.v_liftoff]),
+            false => ("a bound of v_c", vec![self.vc_lower, self.vc_upper]),
+        };
+        // 0 is no velocity at which it slides: stick-slip is never sustained.
+        let found = found.into_iter().filter(|v| v.is_finite() && *v > 0.0);
+        setting.found_beyond_curve(of, &found.collect::<Vec<_>>(), units)
     }
 }
 

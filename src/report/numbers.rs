@@ -2,7 +2,7 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::text::Shown;
+use crate::text::{Shown, to_digits};
 
 /// The last second of the year 9999, in seconds since 1970.
 const LAST_SECOND: u64 = 253_402_300_799;
@@ -92,8 +92,7 @@ pub fn short(value: f64) -> String {
 /// every machine.
 #[must_use]
 pub fn rounded(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.digits$e}").parse::<f64>();
-    Shown(rounded.unwrap_or(value)).to_string()
+    Shown(to_digits(value, digits)).to_string()
 }
 
 /// A bound with at most `digits` digits after its first one, rounded up or down: outwards, so that

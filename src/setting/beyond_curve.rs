@@ -1,24 +1,48 @@
-//! Remarks on a measured friction law: pulling velocities that lie beyond its points.
+//! Remarks on a measured friction law: velocities that lie beyond its points.
 
 use super::law_kind::LawKind;
 use super::parameter::Parameter;
 use super::spec::SweepSpec;
 use super::units::Units;
 use super::values::Setting;
-use crate::text::Shown;
+use crate::slip::speeds::Speeds;
+use crate::text::{Shown, to_digits};
+
+/// Digits after the first one of velocities that are computed.
+const DIGITS: usize = 5;
+/// The relative difference up to which a computed velocity is one of the curve.
+const NEAR: f64 = 1e-9;
 
 impl Setting {
     /// A remark on a v0 beyond the points of a measured friction law.
     #[must_use]
     pub(crate) fn beyond_curve(&self, units: &Units) -> Option<String> {
-        let v0 = Parameter::V0;
-        remark(self.law()?, v0.name(), &[self.get(v0)], units)
+        Curve::of(self.law()?, units)?.remark_on(Parameter::V0.name(), &[self.get(Parameter::V0)])
     }
 
-    /// A remark on a critical velocity beyond the points of a measured friction law.
+    /// A remark on velocities that were computed, called `of`, beyond the points of a measured
+    /// friction law.
     #[must_use]
-    pub(crate) fn vc_beyond_curve(&self, vc: f64, units: &Units) -> Option<String> {
-        remark(self.law()?, "v_c", &[vc], units)
+    pub(crate) fn found_beyond_curve(
+        &self,
+        of: &str,
+        found: &[f64],
+        units: &Units,
+    ) -> Option<String> {
+        let found: Vec<f64> = found.iter().map(|v| to_digits(*v, DIGITS)).collect();
+        Curve::of(self.law()?, units)?.remark_on(of, &found)
+    }
+
+    /// A remark on a block whose speeds went beyond the points of a measured friction law.
+    #[must_use]
+    pub(crate) fn motion_beyond_curve(&self, speeds: Speeds, units: &Units) -> Option<String> {
+        let curve = Curve::of(self.law()?, units)?;
+        let told = |way: &str, v: f64| format!("{way} {}", Shown(to_digits(v, DIGITS)));
+        let below = speeds.least < curve.first * (1.0 - NEAR);
+        let above = speeds.most > curve.last * (1.0 + NEAR);
+        let below = below.then(|| told("down to", speeds.least));
+        let above = above.then(|| told("up to", speeds.most));
+        curve.remark("the speed of the block", [below, above])
     }
 }
 
@@ -29,37 +53,59 @@ impl SweepSpec {
         let axis = self.axes.iter().find(|a| a.parameter == Parameter::V0);
         let fixed = [self.fixed.get(Parameter::V0)];
         let speeds = axis.map_or(&fixed[..], |axis| &axis.values);
-        remark(self.fixed.law()?, Parameter::V0.name(), speeds, &self.units)
+        Curve::of(self.fixed.law()?, &self.units)?.remark_on(Parameter::V0.name(), speeds)
     }
 }
 
-/// The remark on those of the speeds that lie beyond the points; none if none of them does.
-fn remark(law: &LawKind, of: &str, speeds: &[f64], units: &Units) -> Option<String> {
-    let LawKind::Table(table) = law else {
-        return None;
-    };
-    let (first, last) = (table.speeds().first()?, table.speeds().last()?);
-    let unit = match &*units.of_parameter(Parameter::V0) {
-        "1" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let (below, above) = (|v: &f64| v < first, |v: &f64| v > last);
-    let parts = [part(speeds, below), part(speeds, above)];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| {
-        format!(
-            "{of} {}{unit} lies beyond the curve ({} to {}{unit}), where it is taken as constant: \
-             the slope 0 is an assumption",
-            parts.join(" and "),
-            Shown(*first),
-            Shown(*last),
-        )
-    })
+/// The ends of a measured curve.
+struct Curve {
+    first: f64,
+    last: f64,
+    /// The unit of velocities, with a space before it.
+    unit: String,
 }
 
-/// "= 2" or "from 0.6 to 2": those of the speeds that lie `beyond`, none if none does.
-fn part(speeds: &[f64], beyond: impl Fn(&f64) -> bool) -> Option<String> {
-    let beyond = || speeds.iter().copied().filter(&beyond);
+impl Curve {
+    /// That of a law; none of a law that is not measured.
+    fn of(law: &LawKind, units: &Units) -> Option<Self> {
+        let LawKind::Table(table) = law else {
+            return None;
+        };
+        Some(Self {
+            first: *table.speeds().first()?,
+            last: *table.speeds().last()?,
+            unit: match &*units.of_parameter(Parameter::V0) {
+                "1" => String::new(),
+                unit => format!(" {unit}"),
+            },
+        })
+    }
+
+    /// The remark on those of the velocities, called `of`, that lie beyond the curve.
+    fn remark_on(&self, of: &str, velocities: &[f64]) -> Option<String> {
+        let below = part(velocities, |v| *v < self.first);
+        self.remark(of, [below, part(velocities, |v| *v > self.last)])
+    }
+
+    /// The remark on what lies below and above the curve; none if nothing does.
+    fn remark(&self, of: &str, beyond: [Option<String>; 2]) -> Option<String> {
+        let Self { first, last, unit } = self;
+        let parts: Vec<String> = beyond.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| {
+            format!(
+                "{of} {}{unit} lies beyond the curve ({} to {}{unit}), where it is taken as \
+                 constant: the slope 0 is an assumption",
+                parts.join(" and "),
+                Shown(*first),
+                Shown(*last),
+            )
+        })
+    }
+}
+
+/// "= 2" or "from 0.6 to 2": those of the velocities that lie `beyond`, none if none does.
+fn part(velocities: &[f64], beyond: impl Fn(&f64) -> bool) -> Option<String> {
+    let beyond = || velocities.iter().copied().filter(&beyond);
     let (from, to) = (beyond().reduce(f64::min)?, beyond().reduce(f64::max)?);
     Some(match from == to {
         true => format!("= {}", Shown(from)),
@@ -99,6 +145,27 @@ mod tests {
             metres.starts_with("v0 = 2 m s-1 lies beyond the curve (0.001 to 0.5 m s-1),"),
             "{metres}"
         );
+    }
+
+    /// Of a motion its smallest and its largest speed are told, unless they are the ends of the
+    /// curve within rounding.
+    #[test]
+    fn the_speeds_of_a_motion_beyond_the_points_are_named() {
+        let spec: SweepSpec = format!("[axes]\nv0 = [0.1]\ntau = [1]\n{LAW}")
+            .parse()
+            .unwrap();
+        let told = |least, most| {
+            let speeds = Speeds { least, most };
+            let told = spec.fixed.motion_beyond_curve(speeds, &Units::default());
+            told.map(|told| told.split_once(" lies beyond").unwrap().0.to_owned())
+        };
+        let says = |what: &str| Some(format!("the speed of the block {what}"));
+        assert_eq!(told(0.0, 0.4), says("down to 0"));
+        assert_eq!(told(0.001, 1.0 / 1.5), says("up to 0.666667"));
+        assert_eq!(told(5e-4, 2.0), says("down to 0.0005 and up to 2"));
+        assert_eq!(told(0.001 * (1.0 - 1e-15), 0.5 * (1.0 + 1e-15)), None);
+        let Speeds { least, most } = Speeds::default();
+        assert_eq!(told(least, most), None);
     }
 
     #[test]

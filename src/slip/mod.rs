@@ -5,6 +5,7 @@
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
 //! - `sliding`: linear stability of sliding
+//! - [`speeds`]: the speeds that a motion reaches
 //! - [`step`]: the polynomials of one step
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
@@ -19,5 +20,6 @@ mod history;
 pub mod motion;
 pub mod outcome;
 pub mod sliding;
+pub mod speeds;
 pub mod step;
 pub mod watch;

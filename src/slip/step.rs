@@ -123,6 +123,21 @@ impl Step {
         self.farthest(&self.force, 0.0, known)
     }
 
+    /// The smallest and the largest |ẋ| of the step, or those `known` where they are beyond.
+    #[must_use]
+    pub(crate) fn speeds(&self, [least, most]: [f64; 2]) -> [f64; 2] {
+        let u = Self::range(&self.u, self.order);
+        let most = self.farthest(&self.u, 0.0, most);
+        if u[0].abs() - spread(u, self.length) >= least {
+            return [least, most];
+        }
+        // ẋ keeps its sign in a step.
+        let direction = value(u, 0.5 * self.length).signum();
+        let back = Self::scaled(&self.u, -direction, 0.0);
+        let slowest = -largest(Self::range(&back, self.order), self.length, -least);
+        [slowest.max(0.0), most]
+    }
+
     /// a + d ȧ at the end of the step.
     pub(super) fn force_at_end(&self) -> f64 {
         value(Self::range(&self.force, self.order), self.length)

@@ -21,6 +21,6 @@ mod toml_size;
 
 #[cfg(feature = "sweep")]
 pub use hexadecimal::in_hexadecimal;
-pub use number::{Shown, finite};
+pub use number::{Shown, finite, to_digits};
 #[cfg(feature = "sweep")]
 pub use toml_reader::SpecError;

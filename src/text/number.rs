@@ -18,6 +18,12 @@ impl fmt::Display for Shown {
     }
 }
 
+/// The value with at most `digits` digits after its first one.
+#[must_use]
+pub fn to_digits(value: f64, digits: usize) -> f64 {
+    format!("{value:.digits$e}").parse().unwrap_or(value)
+}
+
 /// The value, if it is finite.
 #[must_use]
 pub fn finite(value: f64) -> Option<f64> {

@@ -792,6 +792,37 @@ fn assumptions_on_measured_friction_are_told() {
     assert_eq!(told(&folder, &inside), "");
 }
 
+/// A block that goes faster than the last point of the law, or slower than the first, is warned of,
+/// wherever it is pulled; one that stays between them is not.
+#[test]
+fn blocks_that_leave_a_measured_curve_are_warned_of() {
+    let from_rest = "0 0.5\n0.1 0.45\n0.5 0.4\n";
+    let folder = Folder::with(&[("curve.csv", CURVE), ("rest.csv", from_rest)]);
+    let said = |curve: &str, words: &[&str]| {
+        let law = ["--friction", "table", "--table", curve, "--mu-s", "1"];
+        told(&folder, &[words, &law[..]].concat())
+    };
+    let simulate = |curve: &str, v0: &str| said(curve, &["simulate", "--fresh", "--v0", v0]);
+    let stick_slip = simulate("rest.csv", "0.1");
+    let up = "warning: the speed of the block up to 0.";
+    let ends = format!(" lies beyond the curve (0 to 0.5), {CONSTANT}");
+    assert!(
+        stick_slip.contains(up) && stick_slip.ends_with(&ends),
+        "{stick_slip}"
+    );
+    let both = simulate("curve.csv", "0.1");
+    assert!(
+        both.contains("warning: the speed of the block down to 0 and up to 0."),
+        "{both}"
+    );
+    let starts = ["basin", "--v0", "0.1", "--starts", "64"];
+    let basin = said("rest.csv", &starts);
+    assert!(
+        basin.starts_with("warning: the speed of the block up to 1.") && basin.ends_with(&ends),
+        "{basin}"
+    );
+}
+
 /// Where the unstable roots are counted, sliding is unstable beyond doubt.
 #[test]
 fn no_margins_are_told_with_the_roots_that_forbid_them() {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 #[cfg(target_os = "linux")]
 use crate::processes::peak;
-use crate::program::{Folder, out, signal};
+use crate::program::{Folder, err, out, signal};
 use crate::server::{Answer, Serving, decoded};
 use crate::with_many_connections;
 use slipmap::linear::Crossings;
@@ -16,11 +16,16 @@ const POINT: &str = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
 const PLANE: &str = "boundaries = true\n[axes]\nalpha_v = { from = -1.0, to = 0.2, points = 60 }\n\
     tau = { from = 0.0, to = 12.0, points = 80 }\n[fixed]\nmu_prime = -0.3\n";
 
-/// The answer, with what its own command line says of it.
+/// The answer without its warning, of which there is none, with what its own command line says of
+/// it.
 fn with_command(folder: &Folder, answer: &Answer) -> [serde_json::Value; 2] {
     assert_eq!(answer.status, 200, "{}", answer.head);
     let mut found = answer.json();
     let command = found.as_object_mut().unwrap().remove("command").unwrap();
+    assert_eq!(
+        found.as_object_mut().unwrap().remove("warning").unwrap(),
+        serde_json::Value::Null
+    );
     let words: Vec<&str> = command.as_str().unwrap().split(' ').skip(1).collect();
     let told = folder.run(&[&words[..], &["--json"]].concat());
     let mut told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
@@ -66,6 +71,45 @@ fn a_point_is_what_the_command_says() {
     assert_eq!(command, format!("slipmap point {}", flags.join(" ")));
     let table = "[fixed]\nv0 = 0.1\ntau = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [0.9, 0.5]\n";
     assert!(serving.ask("point", table).json()["command"].is_null());
+}
+
+/// What leaves the velocities of a measured friction law is warned of in the words of the command.
+#[test]
+fn velocities_that_were_not_measured_are_warned_of() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    let law = "[friction]\nlaw = \"table\"\nspeeds = [0, 0.1, 0.5]\nmu_k = [0.5, 0.45, 0.4]\n";
+    let law = format!("[fixed]\nalpha_v = 0.1\ntau = 1\n{law}");
+    let sliding = law.replace("[fixed]", "[fixed]\nv0 = 2");
+    let slow = law.replace("[fixed]", "[fixed]\nv0 = 0.1");
+    let case = format!("{slow}[start]\nx_dot0 = 0.6\n");
+    for (request, command, text, of) in [
+        ("point", "point", &sliding, "v0 = 2"),
+        ("vc", "vc", &law, "v_c = 3.28"),
+        ("motion", "simulate", &case, "the speed of the block up to "),
+    ] {
+        std::fs::write(folder.path().join("text.toml"), text).unwrap();
+        let words: &[&str] = match command {
+            "simulate" => &["simulate", "text.toml", "-o", "-"],
+            _ => &[command, "--setting", "text.toml"],
+        };
+        let said = err(&folder.run(words));
+        let answer = serving.ask(request, text);
+        let warning = match request {
+            "motion" => decoded(&answer.body).0["warning"].clone(),
+            _ => answer.json()["warning"].clone(),
+        };
+        let warning = warning.as_str().unwrap();
+        assert!(
+            warning.starts_with(of) && warning.contains("lies beyond the curve"),
+            "{warning}"
+        );
+        assert!(
+            said.contains(&format!("warning: {warning}\n")),
+            "{said}{warning}"
+        );
+    }
+    assert!(serving.ask("point", &slow).json()["warning"].is_null());
 }
 
 #[test]

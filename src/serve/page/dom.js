@@ -25,6 +25,9 @@ export function terms(list, rows) {
   list.replaceChildren(...parts);
 }
 
+/** The row of the warning of an answer; none without one. */
+export const warned = ({ warning }) => (warning ? [["warning", warning]] : []);
+
 /** Offers a file to the browser's downloads. */
 export function download(name, content, type) {
   const blob = content instanceof Blob ? content : new Blob([content], { type });

@@ -1,6 +1,6 @@
 // The motion from a start that can be dragged: in the phase plane and in time.
 
-import { element, terms } from "./dom.js";
+import { element, terms, warned } from "./dom.js";
 import { titleOf } from "./frame.js";
 import { Newest } from "./newest.js";
 import { drawPhase, linesIn, phaseScales } from "./plots.js";
@@ -120,6 +120,7 @@ export class MotionCard {
       ["settles after", settle === null ? "never" : time(settle, 6)],
       ["smallest load", withUnit(told(load, 6), motion.unit_N)],
       ["period of stick-slip", period === null ? "none" : time(period, 6)],
+      ...warned(motion),
     ]);
   }
 

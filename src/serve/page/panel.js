@@ -1,7 +1,7 @@
 // Everything about one point, by its exact values.
 
 import { Asked } from "./asked.js";
-import { copy, element, make, terms } from "./dom.js";
+import { copy, element, make, terms, warned } from "./dom.js";
 import { MotionCard } from "./motion.js";
 import { drawDelays, drawRoots } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
@@ -172,6 +172,7 @@ export class Panel {
       ["delay margin", margin],
       ["spectral abscissa", abscissa],
       ["rightmost roots", sure],
+      ...warned(point),
     ]);
     const none = point.stable_delays ? "none" : "unknown";
     const delays = stable.length ? stable.join(", ") : none;
@@ -214,6 +215,7 @@ export class Panel {
       ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : velocity(found.v_liftoff)],
       ["asked by the protocol", found.protocol],
       ["found by", `${found.method}${found.decided ? "" : "; not decided beyond"}`],
+      ...warned(found),
     ]);
   }
 

@@ -72,7 +72,7 @@ impl<'p> BasinColumns<'p> {
             if stop.is_set() {
                 return None;
             }
-            tally.count(place, follower.follow(place, &mut self.motion));
+            tally.count(place, follower.follow(place, &mut self.motion, &mut ()));
         }
         Some(Ok(asked.cell(&tally)))
     }

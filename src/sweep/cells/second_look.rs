@@ -219,7 +219,7 @@ fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
     let asked = asked.again(SECOND_STARTS, SECOND_TOLERANCE);
     let (mut tally, mut follower, mut motion) = (Tally::default(), asked.follower(), None);
     for place in asked.places() {
-        tally.count(place, follower.follow(place, &mut motion));
+        tally.count(place, follower.follow(place, &mut motion, &mut ()));
     }
     let (other, upper) = (asked.cell(&tally), value(Field::BasinShareUpper));
     let error = value(Field::BasinShareError);
