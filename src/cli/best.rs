@@ -76,8 +76,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
     robust: Option<f64>,
     /// Write the setting (the robust one with --robust), if it is stable, to a file; point and
-    /// margins take it with --setting, and with a friction law vc and basin, and simulate as a case
-    /// file
+    /// margins take it with --setting, and with a friction law vc, basin and simulate
     #[arg(long, value_name = "SETTING.toml")]
     save: Option<PathBuf>,
     /// One JSON object on standard output

@@ -51,8 +51,8 @@ impl Kind {
             Self::Text(TextKind::Case) => ("a case file", "`slipmap plan` and `simulate` take it"),
             Self::Text(TextKind::Setting) => (
                 "a file of a setting",
-                "`slipmap point` and `margins` take it with --setting; with a friction law `vc` \
-                 and `basin` do, and `simulate` takes it as a case file",
+                "`slipmap point` and `margins` take it with --setting; with a friction law `vc`, \
+                 `basin` and `simulate` do",
             ),
             Self::Text(TextKind::System) => (
                 "a system file",

@@ -47,6 +47,7 @@
 //! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
 //! - `signals`: signals that stop a command in order, even while it reads or draws
 //! - `simulate`: `slipmap simulate`
+//! - `start_args`: the flags for the start and the end of a motion
 //! - `status`: `slipmap status`
 //! - `sweep_file`: reads sweep files, case files and tables of friction, with errors that point
 //!   into them
@@ -102,6 +103,7 @@ mod setting;
 mod show;
 mod signals;
 mod simulate;
+mod start_args;
 mod status;
 mod sweep_file;
 mod system_args;

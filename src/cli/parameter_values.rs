@@ -40,7 +40,7 @@ impl Values {
 }
 
 /// Reads the number of a flag; its range is checked with its parameter.
-fn parse_number(text: &str) -> Result<f64, String> {
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();
     number.ok_or_else(|| "expected a number, such as -0.3 or 1e-2".to_owned())
 }

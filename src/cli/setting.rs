@@ -29,6 +29,11 @@ impl SettingArgs {
         self.setting.is_some()
     }
 
+    /// The path of the file.
+    pub(super) fn path(&self) -> Option<&Path> {
+        self.setting.as_deref()
+    }
+
     /// The point in the file; none without a file.
     pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
         let Some(path) = &self.setting else {
@@ -69,7 +74,7 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
 /// Writes a setting, completely or not at all.
 pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
     let takers = match setting.law() {
-        Some(_) => "point, margins, vc and basin take it with --setting, simulate as a case file",
+        Some(_) => "point, margins, vc, basin and simulate take it with --setting",
         None => "point and margins take it with --setting",
     };
     let text = setting_text(setting, units, |_| true);

@@ -8,9 +8,11 @@ use crate::explore::motion::{Followed, MotionSummary};
 use crate::report::numbers::{grouped, unit_behind};
 use crate::report::picture::{self, Picture, PictureError, PictureOptions};
 use crate::report::table::write_samples;
+use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::setting_text::setting_text;
 use crate::setting::simulation::DISTURBED;
-use crate::setting::{CaseSpec, Parameter};
+use crate::setting::units::Units;
+use crate::setting::{CaseSpec, Parameter, Setting};
 use crate::store::{Output, StoreError, trace_file, trace_reader};
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::trace::QUANTITIES;
@@ -30,22 +32,30 @@ use super::output::{
 use super::parameters::ParameterArgs;
 use super::plot;
 use super::say::{self, ForPeople};
+use super::setting::SettingArgs;
 use super::signals::Signals;
+use super::start_args::StartArgs;
 use super::sweep_file::read_case;
 use super::text_output::{STANDARD_OUTPUT, To, is_csv};
 
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
+#[command(after_help = "Examples:
+  slipmap simulate sweeps/fig3a.toml
+  slipmap simulate --setting setting.toml --x-dot0 0 --switch-on 70 --until 150")]
 pub(super) struct Args {
     /// The case file
-    #[arg(value_name = "CASE.toml", conflicts_with = "map")]
+    #[arg(value_name = "CASE.toml", conflicts_with_all = ["map", "setting"])]
     case: Option<PathBuf>,
     #[command(flatten)]
     parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
+    start: StartArgs,
+    #[command(flatten)]
     cell: CellArgs,
-    /// The trace to write [default: the case file's name with .h5, in the current folder; with
-    /// --map the map's name with -motion.h5, with flags motion.h5]. A name that ends in .csv: its
+    #[command(flatten)]
+    file: SettingArgs,
+    /// The trace to write [default: the name of the file of the case or setting with .h5, in the
+    /// current folder; with --map the map's name with -motion.h5, with flags motion.h5]. A name that ends in .csv: its
     /// samples as text; - for those on standard output, and nothing else there
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
@@ -160,9 +170,12 @@ impl Args {
         if let Some(case) = &self.case {
             return read_case(case);
         }
-        let (from, text) = match self.cell.case()? {
-            Some(text) => ("the cell", text),
-            None => ("the flags", self.case_of_flags()?),
+        let (from, text) = match (self.cell.case()?, self.file.point(PointOf::Sliding)?) {
+            (Some(text), _) => ("the cell", text),
+            (None, Some(PointSpec { setting, units, .. })) => {
+                ("the setting", self.case_of(&setting, &units))
+            }
+            (None, None) => ("the flags", self.case_of_flags()?),
         };
         let spec = text.parse();
         spec.map_err(|error| Failure::in_file(error, from, &text))
@@ -174,22 +187,28 @@ impl Args {
             return Err(Failure::bad_input_with_help(
                 "no case is given",
                 "slipmap simulate CASE.toml; or flags, such as --friction weakening --mu0 0.5 \
-                 --v-s 0.5 --v0 0.1; or a cell of a map: --map MAP.h5 --at AXIS=VALUE",
+                 --v-s 0.5 --v0 0.1; or --setting SETTING.toml; or a cell of a map: --map MAP.h5 \
+                 --at AXIS=VALUE",
             ));
         }
         let setting = self.parameters.setting()?;
         self.parameters
             .tell_static_friction("when sticks end depends on it");
-        let units = self.parameters.units();
-        Ok(setting_text(&setting, &units, |_| true))
+        Ok(self.case_of(&setting, &self.parameters.units()))
     }
 
-    /// Checks that no other flags of the setting accompany a case or a map.
+    /// The text of a case file for a setting, with the start and the end of the flags.
+    fn case_of(&self, setting: &Setting, units: &Units) -> String {
+        self.start.case(&setting_text(setting, units, |_| true))
+    }
+
+    /// Checks that no flags that it says itself accompany a case, a map or a setting.
     fn check_alone(&self) -> Result<(), Failure> {
         let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
-            (Some(_), _) => alone("CASE.toml", flags),
-            (None, Some(_)) => alone("--map", flags),
+            (Some(_), _) => alone("CASE.toml", flags || self.start.any()),
+            (None, Some(_)) => alone("--map", flags || self.start.any()),
+            (None, None) if self.file.is_given() => alone("--setting", flags),
             (None, None) => Ok(()),
         }
     }
@@ -239,7 +258,7 @@ impl Args {
         }
     }
 
-    /// The path of the trace: from the name of the case, or of the map.
+    /// The path of the trace: from the name of the case, the setting or the map.
     fn output_path(&self) -> Result<PathBuf, Failure> {
         let map = self.cell.map.as_deref().and_then(Path::file_stem);
         let of_map = map.map(|stem| {
@@ -248,16 +267,18 @@ impl Args {
             PathBuf::from(name)
         });
         let given = self.output.as_deref().or(of_map.as_deref());
-        let case = self.case.as_deref().unwrap_or(Path::new("motion"));
+        let case = self.case.as_deref().or(self.file.path());
+        let case = case.unwrap_or(Path::new("motion"));
         output_path(given, case, "trace")
     }
 
     /// The provenance of the trace.
     fn provenance(&self) -> Provenance {
-        match (&self.case, &self.cell.map) {
-            (Some(case), _) => provenance("simulate", case),
-            (None, Some(map)) => provenance(&format!("simulate{} --map", self.cell.words()), map),
-            (None, None) => provenance("simulate", Path::new("(flags)")),
+        match (&self.case, &self.cell.map, self.file.path()) {
+            (Some(case), ..) => provenance("simulate", case),
+            (_, Some(map), _) => provenance(&format!("simulate{} --map", self.cell.words()), map),
+            (.., Some(setting)) => provenance("simulate --setting", setting),
+            (None, None, None) => provenance("simulate", Path::new("(flags)")),
         }
     }
 }

@@ -582,6 +582,10 @@ catalogue! {
             dimension: VELOCITY,
             range: Range::Any,
             group: Group::Start,
+            flag: Some(Flag {
+                value: "V",
+                help: "ẋ at t = 0 [default: 1 % faster than v0, or v0 with --a0]",
+            }),
             ..ROW
         };
         /// Elongation at t = 0 and before.
@@ -592,6 +596,10 @@ catalogue! {
             dimension: [0, 1, 0],
             range: Range::Any,
             group: Group::Start,
+            flag: Some(Flag {
+                value: "A",
+                help: "Elongation of the spring at t = 0 and before [default: that of sliding]",
+            }),
             ..ROW
         };
         /// Time from a release of uncontrolled stick-slip to switch-on.

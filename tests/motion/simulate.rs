@@ -145,6 +145,96 @@ fn mistakes_in_case_files_are_shown_in_place() {
     );
 }
 
+/// The start and the end of a motion as flags, beside a setting from a file or from flags, are those
+/// of the keys of a case file.
+#[test]
+fn flags_of_start_and_end_are_the_keys_of_a_case() {
+    let setting = format!("{PLAIN}alpha_v = -0.3\ntau = 4.0\n");
+    let keys = "[start]\nx_dot0 = 0.0\na0 = -0.25\n[trace]\nuntil = 30.0\n";
+    let case = format!("switch_on = 11.5\n{setting}{keys}");
+    let folder = Folder::with(&[("setting.toml", &setting), ("case.toml", &case)]);
+    let ends = [
+        "--x-dot0",
+        "0",
+        "--a0=-0.25",
+        "--switch-on",
+        "11.5",
+        "--until",
+        "30",
+    ];
+    let by_file = [&["--setting", "setting.toml"], &ends[..]].concat();
+    let law = [
+        "--friction",
+        "weakening",
+        "--mu0",
+        "0.5",
+        "--v-s",
+        "0.5",
+        "--v0",
+        "0.1",
+    ];
+    let by_flags = [&law[..], &["--alpha-v=-0.3", "--tau", "4"], &ends[..]].concat();
+    let told = |args: &[&str]| {
+        let mut value = json(&folder, args);
+        value.as_object_mut().unwrap().remove("trace").unwrap();
+        value
+    };
+    let known = told(&["case.toml"]);
+    assert_eq!(events(&known, "switch_on")[0].0, 11.5);
+    let [one, other] = [by_file, by_flags].map(|args| told(&args));
+    assert_eq!((&one, &other), (&known, &known));
+    let files = ["case.h5", "setting.h5", "motion.h5"].map(|name| folder.path().join(name));
+    let samples = files.map(|path| {
+        let file = hdf5::File::open(path).unwrap();
+        ["t", "x_dot", "a"].map(|name| file.dataset(name).unwrap().read_raw::<f64>().unwrap())
+    });
+    assert!(samples[0] == samples[1] && samples[0] == samples[2]);
+    assert_eq!(samples[0][0].last(), Some(&30.0));
+    let never = told(&[
+        "--setting",
+        "setting.toml",
+        "--switch-on",
+        "false",
+        "--x-dot0=0.1",
+        "--fresh",
+    ]);
+    assert!(events(&never, "switch_on").is_empty());
+}
+
+/// Mistakes in these flags are told as those of the keys, and none of them stands beside a case.
+#[test]
+fn mistakes_in_flags_of_start_and_end() {
+    let setting = format!("{PLAIN}alpha_v = -0.3\ntau = 4.0\n");
+    let lawless = "[fixed]\nmu_prime = -0.3\ntau = 1\n";
+    let files = [
+        ("setting.toml", &*setting),
+        ("case.toml", PLAIN),
+        ("slope.toml", lawless),
+    ];
+    let folder = Folder::with(&files);
+    let mut shown = String::new();
+    for words in [
+        "--setting setting.toml --switch-on=-1",
+        "--setting setting.toml --switch-on true",
+        "--setting setting.toml --switch-on nan",
+        "--setting setting.toml --x-dot0 1e300",
+        "--setting setting.toml --until 0",
+        "--setting setting.toml --a0 none",
+        "--setting setting.toml --tau 3",
+        "--setting setting.toml --map map.h5",
+        "--setting case.toml case.toml",
+        "--setting slope.toml",
+        "case.toml --until 3",
+        "--until 3",
+    ] {
+        let args: Vec<&str> = ["simulate"].into_iter().chain(words.split(' ')).collect();
+        let said = folder.run(&args);
+        assert_eq!((said.status.code(), &*out(&said)), (Some(2), ""), "{words}");
+        shown += &format!("simulate {words}\n{}\n", err(&said));
+    }
+    insta::assert_snapshot!("start_and_end", shown);
+}
+
 #[test]
 fn only_traces_are_replaced() {
     let folder = Folder::with(&[

@@ -295,7 +295,11 @@ fn only_what_holds_is_saved() {
         "0.35",
     ];
     expect(&best(&law), 0, "best.toml");
-    assert!(read().contains("simulate as a case file"), "{}", read());
+    assert!(
+        read().contains("basin and simulate take it with --setting"),
+        "{}",
+        read()
+    );
 }
 
 /// What physical units there are stands behind every number that people are told.
