@@ -469,6 +469,37 @@ const BAD: &[(&str, &str, &str)] = &[
         "-1",
         "outside its range",
     ),
+    // Dashpots are of numbers that are not negative, in units of the three that all are made of.
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\ndamping = -0.1\n",
+        "-0.1",
+        "damping = -0.1 is outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\nviscous = [0, -1]\n[fixed]\nmu_prime = 1\n",
+        "-1",
+        "viscous",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\ndamping = \"0.1 kg/s\"\n",
+        "\"0.1 kg/s\"",
+        "fixed.damping: expected a number",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nviscous = { value = 1, unit = \"N\" }\n",
+        "{ value = 1, unit = \"N\" }",
+        "fixed.viscous: expected a number",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\ndamping = 0.1\n[units]\ndamping = \"kg\"\n",
+        "damping",
+        "unknown key `units.damping`",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nviscous = 0.1\n[units]\nforce = \"N\"\n",
+        "units",
+        "force, length and time are needed",
+    ),
 ];
 
 #[test]
