@@ -239,9 +239,12 @@ pub fn find_in_line(
         .collect()
 }
 
-/// The windows by the protocol `follow`: one from rest to the end of stick-slip, or none.
+/// The windows by the protocol `follow`: one from rest, or the smallest v, to the end
+/// of stick-slip, or none.
 fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> CriticalWindows {
     let critical = in_units(found, units);
+    // No v0 is below the smallest v.
+    let least = problem.feedback.limits.velocity[0].max(0.0);
     let top = match critical.transition {
         Transition::LiftOff => critical.v_liftoff,
         Transition::Persists => problem.v_max() * units.velocity,
@@ -250,7 +253,7 @@ fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> C
     CriticalWindows {
         critical,
         windows: match critical.sustained {
-            true => vec![[0.0, top]],
+            true => vec![[least * units.velocity, top]],
             false => Vec::new(),
         },
     }

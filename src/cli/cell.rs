@@ -208,7 +208,7 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),
         true => Err(Failure::bad_input_with_help(
-            format!("{flag} is given with other flags of the point"),
+            format!("{flag} is given with other flags"),
             match flag {
                 "--map" => "the map says everything but the cell, which --at says",
                 "--system" => "--set and --tau say everything of it",

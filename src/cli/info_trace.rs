@@ -66,13 +66,14 @@ struct Numbers {
     /// The smallest load since switch-on; null where the motion ended before.
     #[schema(required)]
     n_min: Option<f64>,
-    /// The largest spring force since switch-on; null where it grew beyond all numbers.
+    /// The largest force of spring and dashpot since switch-on; null where it grew beyond all
+    /// numbers.
     #[schema(required)]
     peak_force: Option<f64>,
     /// How long v or N was at a limit since switch-on; null without limits of actuators.
     #[schema(required)]
     time_at_limit: Option<f64>,
-    /// The share of the time since switch-on; null without limits of actuators.
+    /// The share of the time since switch-on for which it was; null without limits of actuators.
     #[schema(required)]
     share_at_limit: Option<f64>,
     /// Period of stick-slip; null where it did not end up in that.

@@ -300,7 +300,7 @@ impl<A: Asks> ParameterArgs<A> {
                 setting.set(parameter, value);
             }
         }
-        if let Some((message, help)) = setting.excluded_by_limits(flag) {
+        if let Some((message, help)) = setting.excluded_by_limits(left_out, flag) {
             return Err(Failure::bad_input_with_help(message, help));
         }
         if !searched.contains(&Parameter::Tau) {

@@ -55,8 +55,9 @@ pub(super) struct Args {
     #[command(flatten)]
     file: SettingArgs,
     /// The trace to write [default: the name of the file of the case or setting with .h5, in the
-    /// current folder; with --map the map's name with -motion.h5, with flags motion.h5]. A name that ends in .csv: its
-    /// samples as text; - for those on standard output, and nothing else there
+    /// current folder; with --map the map's name with -motion.h5, with flags motion.h5]. A name
+    /// that ends in .csv: its samples as text; - for those on standard output, and nothing else
+    /// there
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
     /// The picture to draw, .png, .svg or .pdf [default: the trace's name with .png, beside it]
@@ -204,6 +205,7 @@ impl Args {
 
     /// Checks that no flags that it says itself accompany a case, a map or a setting.
     fn check_alone(&self) -> Result<(), Failure> {
+        self.start.check()?;
         let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
             (Some(_), _) => alone("CASE.toml", flags || self.start.any()),

@@ -5,7 +5,13 @@ use crate::setting::parameter::Group;
 use crate::setting::setting_text::number;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::failure::Failure;
 use super::parameter_values::{Values, parse_number};
+use super::parameters::flag;
+use crate::text::Shown;
+
+/// The latest time that a case file takes.
+const LATEST: f64 = 1e12;
 
 /// The start and the end of a motion.
 #[derive(Debug)]
@@ -52,6 +58,27 @@ impl StartArgs {
             .into_iter()
             .any(|p| self.state.get(p).is_some());
         state || switch_on.is_some() || until.is_some()
+    }
+
+    /// Checks that the values are in their ranges.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        for parameter in Parameter::ALL {
+            if let Some(value) = self.state.get(parameter) {
+                let checked = parameter.check(value);
+                checked.map_err(|error| Failure::out_of_range(&flag(parameter), &error))?;
+            }
+        }
+        let TimeArgs { switch_on, until } = &self.times;
+        let switch_on = switch_on.as_ref().and_then(|time| time.parse().ok());
+        for (flag, time) in [("--switch-on", switch_on), ("--until", *until)] {
+            if let Some(time) = time.filter(|time| !(0.0..=LATEST).contains(time)) {
+                let time = Shown(time);
+                return Err(Failure::bad_input(format!(
+                    "{flag} {time} is outside its range: 0 or more, at most 1e12"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// The text of a case file with these flags as keys, and with the tables `setting`.

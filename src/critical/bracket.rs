@@ -13,13 +13,14 @@ use super::problem::{CriticalVelocity, Problem};
 use super::ramp::{self, from_low_velocity};
 use super::regime::{Followed, Observation, Regime, Simulated};
 use super::search::{Chance, Search};
+use super::transition::Transition;
 use crate::slip::motion::Accuracy;
 
 /// An answer with its bounds. A decided answer bounds itself. Else the bounds come from two slow
 /// searches, from the `searches` made before and from the answers `others`.
 ///
 /// Where chance had a part in an answer, or sticks are long, it is decided only if a slow search
-/// agrees with it.
+/// agrees with it; an end of irregular stick-slip only if two slow searches agree.
 pub(super) fn bounded(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -34,7 +35,9 @@ pub(super) fn bounded(
             return by_itself;
         }
         let first = slow(problem, by_itself.vc_lower, Held::Long);
-        if critical.ends_like(&told_slowly(problem, &first)) && !vanished(problem, &critical) {
+        let irregular = critical.transition == Transition::Irregular;
+        let agrees = critical.ends_like(&told_slowly(problem, &first));
+        if agrees && !irregular && !vanished(problem, &critical) {
             return by_itself;
         }
         return by_slow_searches(problem, critical, first, &searches, others);

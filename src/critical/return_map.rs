@@ -252,7 +252,7 @@ impl ReturnMap for Motion {
             if !(self.u + self.a).is_finite() {
                 return Err(NoReturn::Undefined);
             }
-            n_min = self.last_step().smallest_load(n_min);
+            n_min = self.smallest_load(n_min);
             match (event, stopped) {
                 (Some(Event::LiftOff), _) => return Err(NoReturn::LiftOff),
                 (Some(Event::Stick), None) => {

@@ -108,13 +108,14 @@ pub struct MotionSummary {
     /// The smallest load since switch-on; null where the motion ended before.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub n_min: f64,
-    /// The largest spring force since switch-on; null where it grew beyond all numbers.
+    /// The largest force of spring and dashpot since switch-on; null where it grew beyond all
+    /// numbers.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub peak_force: f64,
     /// How long v or N was at a limit since switch-on; null without limits of actuators.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub time_at_limit: f64,
-    /// The share of the time since switch-on; null without limits of actuators.
+    /// The share of the time since switch-on for which it was; null without limits of actuators.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub share_at_limit: f64,
     /// Period of stick-slip; null where it did not end up in that.

@@ -51,7 +51,7 @@ impl DampedEnd {
             (0..GAINS).any(|i| {
                 let share = 2.0 * f64::from(i) / f64::from(GAINS - 1) - 1.0;
                 let gain = end.gain * (1.0 + AROUND * share);
-                has_stable_delay(Groups::new(slope + damping, gain, 0.0).coupled(damping))
+                has_stable_delay(groups(slope, damping, gain))
             })
         };
         Self {
@@ -115,7 +115,12 @@ impl Ends {
         let how = "With d = 2ζ the slope b + d and the load gain −d a_v stand in the letter's own \
             equation. Its first lobe of negative gains shrinks to a point where both arms of the \
             fold have the same slope.";
-        let ends = self.ends.iter().map(|end| {
+        // The end of the map first.
+        let (of_map, others): (Vec<&DampedEnd>, Vec<_>) = self
+            .ends
+            .iter()
+            .partition(|end| end.damping_ratio == OF_SWEEPS);
+        let ends = of_map.into_iter().chain(others).map(|end| {
             let meaning = "slope at which negative gains end, √(κM)/N0";
             let name = format!("end at zeta {}", end.damping_ratio);
             ClaimValue::of(name, meaning, end.end).within(TANGENCY_ERROR)
@@ -167,7 +172,7 @@ impl ShortAt {
         Ok(Self {
             slope,
             cells,
-            undamped: any_gain(slope, 0.0, TRIED_DELAY),
+            undamped: stable_undamped(slope),
             longest: longest(slope, damping),
             latency,
             bound: damping * damping / (4.0 * slope.abs()) - 0.5 * TRIED_DELAY,
@@ -192,12 +197,16 @@ fn setting(slope: f64, damping: f64, gain: f64) -> Result<Setting, LetterError> 
     Setting::checked(named, None, &[]).map_err(LetterError::spec(SHORT.name))
 }
 
-/// Whether any positive gain with α_v τ < 1 is stable at a delay.
-fn any_gain(slope: f64, damping: f64, tau: f64) -> bool {
+/// The groups of velocity control at a slope, with a dashpot beside the spring.
+fn groups(slope: f64, damping: f64, gain: f64) -> Groups {
+    Groups::new(slope + damping, gain, 0.0).coupled(damping)
+}
+
+/// Whether any positive gain with α_v τ < 1 is stable at [`TRIED_DELAY`] without a dashpot.
+fn stable_undamped(slope: f64) -> bool {
     (1..TRIED).any(|i| {
-        let gain = f64::from(i) / f64::from(TRIED) / tau;
-        let groups = Groups::new(slope + damping, gain, 0.0).coupled(damping);
-        Crossings::of(groups).n_unstable(tau) == 0
+        let gain = f64::from(i) / f64::from(TRIED) / TRIED_DELAY;
+        Crossings::of(groups(slope, 0.0, gain)).n_unstable(TRIED_DELAY) == 0
     })
 }
 
@@ -205,8 +214,7 @@ fn any_gain(slope: f64, damping: f64, tau: f64) -> bool {
 /// reaches, counted from the delay 0.
 fn longest(slope: f64, damping: f64) -> f64 {
     let reach = |gain: f64| {
-        let groups = Groups::new(slope + damping, gain, 0.0).coupled(damping);
-        let crossings = Crossings::of(groups);
+        let crossings = Crossings::of(groups(slope, damping, gain));
         let short = crossings.stable_delays().next();
         short
             .filter(|stable| stable.from * gain < 1.0)

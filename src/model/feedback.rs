@@ -73,10 +73,15 @@ impl ActuatorLimits {
         *self != Self::default()
     }
 
+    /// Whether there is a smallest load: then nothing lifts off.
+    pub(crate) fn holds_load(&self) -> bool {
+        self.load[0] > 0.0
+    }
+
     /// N where `commanded` is asked for; a smallest load of 0 leaves it as it is.
     pub(crate) fn load_of(&self, commanded: f64) -> f64 {
         match self.load {
-            [least, _] if least > 0.0 && commanded < least => least,
+            [least, _] if self.holds_load() && commanded < least => least,
             [_, most] if commanded > most => most,
             _ => commanded,
         }

@@ -6,7 +6,8 @@ use super::parameter::Parameter;
 use super::values::Setting;
 use crate::text::Shown;
 
-/// Pairs of parameters of which the first may not be above the second. One of each is a limit.
+/// Pairs of parameters of which the first has to be below the second. One of each is a limit. At a
+/// limit itself control would act to one side alone, and no linear answer would hold.
 const ORDERED: [[Parameter; 2]; 6] = {
     use Parameter::{LoadMax, LoadMin, NormalLoad, V0, VMax, VMin};
     [
@@ -37,18 +38,18 @@ impl Excluding {
     ) -> Option<Self> {
         let [low, high] = ORDERED
             .into_iter()
-            .find(|[low, high]| most(*low) > least(*high))?;
+            .find(|[low, high]| most(*low) >= least(*high))?;
         let [below, above] = [(low, most(low)), (high, least(high))];
         Some(match Parameter::LIMITS.contains(&high) {
             true => Self {
                 limit: high,
                 message: [above, below],
-                relation: "below",
+                relation: "not above",
             },
             false => Self {
                 limit: low,
                 message: [below, above],
-                relation: "above",
+                relation: "not below",
             },
         })
     }
@@ -69,7 +70,7 @@ impl Excluding {
             _ => [LoadMin, NormalLoad, LoadMax],
         }
         .map(name);
-        format!("control acts around {between}: {low} <= {between} <= {high}")
+        format!("control acts around {between}: {low} < {between} < {high}")
     }
 }
 
@@ -102,12 +103,18 @@ pub(super) fn without_limits(asked: &FieldsAsked, field: Field) -> Option<Unmet>
 
 impl Setting {
     /// The message and the help where a limit of an actuator excludes v0, N0 or the other limit;
-    /// none where none does. `name` gives the name of a parameter.
+    /// none where none does. The value of a parameter that is `left_aside` does not matter; `name`
+    /// gives the name of a parameter.
     pub(crate) fn excluded_by_limits(
         &self,
+        left_aside: Option<Parameter>,
         name: fn(Parameter) -> String,
     ) -> Option<(String, String)> {
-        let found = Excluding::find(|p| self.get(p), |p| self.get(p))?;
+        let value = |p| match left_aside == Some(p) {
+            true => f64::NAN,
+            false => self.get(p),
+        };
+        let found = Excluding::find(value, value)?;
         Some((found.message(name), found.help(name)))
     }
 }
@@ -129,20 +136,29 @@ mod tests {
     fn limits_stand_in_order_around_what_they_limit() {
         use Parameter::{LoadMax, LoadMin, NormalLoad, V0, VMax, VMin};
         assert_eq!(found(&[]), None);
-        assert_eq!(found(&[(VMin, -1.0), (V0, 0.3), (VMax, 0.3)]), None);
+        assert_eq!(found(&[(VMin, -1.0), (V0, 0.3), (VMax, 0.31)]), None);
         let told = |numbers: &[(Parameter, f64)], text: &str| {
             assert_eq!(found(numbers).as_deref(), Some(text));
         };
-        told(&[(V0, 0.3), (VMax, 0.2)], "v_max = 0.2 is below v0 = 0.3");
-        told(&[(V0, 0.3), (VMin, 0.4)], "v_min = 0.4 is above v0 = 0.3");
+        told(
+            &[(V0, 0.3), (VMax, 0.3)],
+            "v_max = 0.3 is not above v0 = 0.3",
+        );
+        told(
+            &[(V0, 0.3), (VMin, 0.4)],
+            "v_min = 0.4 is not below v0 = 0.3",
+        );
         told(
             &[(VMin, 0.4), (VMax, 0.2)],
-            "v_max = 0.2 is below v_min = 0.4",
+            "v_max = 0.2 is not above v_min = 0.4",
         );
-        told(&[(LoadMin, 1.5)], "load_min = 1.5 is above normal_load = 1");
+        told(
+            &[(LoadMin, 1.5)],
+            "load_min = 1.5 is not below normal_load = 1",
+        );
         told(
             &[(NormalLoad, 20.0), (LoadMax, 10.0)],
-            "load_max = 10 is below normal_load = 20",
+            "load_max = 10 is not above normal_load = 20",
         );
     }
 }

@@ -547,10 +547,10 @@ catalogue! {
             comment: Some(UNTIL_KNOWN),
             ..ROW
         };
-        /// The largest spring force since switch-on.
+        /// The largest force of spring and dashpot since switch-on.
         PeakForce = Row {
             name: "peak_force",
-            long_name: "largest spring force since switch-on",
+            long_name: "largest force of spring and dashpot since switch-on",
             short_name: "peak force",
             measure: FORCE,
             source: Source::Motion(|motion| motion.peak),

@@ -283,9 +283,13 @@ impl GivenParameters {
         setting
     }
 
-    /// Checks that limits of actuators exclude nothing that has one value.
-    fn check_limits(&self) -> Result<(), SpecError> {
+    /// Checks that limits of actuators exclude nothing that has one value. What is `optional` does
+    /// not matter.
+    fn check_limits(&self, optional: &[Parameter]) -> Result<(), SpecError> {
         let value = |p: Parameter| {
+            if optional.contains(&p) {
+                return f64::NAN;
+            }
             let mut fixed = self.values.iter().filter(|(given, _)| *given == p);
             let default = self.place(p).is_none().then(|| p.default_value()).flatten();
             fixed
@@ -310,7 +314,7 @@ impl GivenParameters {
     ) -> Result<(), SpecError> {
         let law = self.law.as_ref().map(|(law, _)| law);
         let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
-        self.check_limits()?;
+        self.check_limits(optional)?;
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
                 GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),

@@ -242,7 +242,7 @@ impl Case {
         let ActuatorLimits { velocity, load } = self.feedback.limits;
         let n0 = self.oscillator.normal_load();
         for (name, value, [least, most]) in [("v0", self.v0, velocity), ("normal_load", n0, load)] {
-            let within = (least..=most).contains(&value);
+            let within = least < value && value < most;
             ModelError::check(name, value, "within the limits of its actuator", within)?;
         }
         let switch_on = self.switch_on;

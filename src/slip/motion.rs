@@ -205,6 +205,7 @@ impl Motion {
         self.mode = Mode::Forwards;
         self.friction.restart(0.0);
         self.even_since = f64::INFINITY;
+        self.held = Held::default();
         (self.kink, self.signal_kink) = (2, 2);
     }
 
@@ -285,6 +286,7 @@ impl Motion {
         (self.t, self.u) = (0.0, 0.0);
         (self.kink, self.signal_kink) = (self.kink_of_jump(), 0);
         self.even_since = f64::INFINITY;
+        self.held = Held::default();
         has_room
     }
 
@@ -337,6 +339,13 @@ impl Motion {
     #[must_use]
     pub fn last_step(&self) -> &Step {
         &self.step
+    }
+
+    /// The smaller one of `known` and the smallest load of the last step. A limit is passed by the
+    /// noise of a step, which does not count.
+    pub(crate) fn smallest_load(&self, known: f64) -> f64 {
+        let limits = self.parameters.feedback.limits;
+        limits.load_of(self.step.smallest_load(known)).min(known)
     }
 
     /// The force that a block which has just stopped lacks to move, μ_S n − |a + d ȧ|.

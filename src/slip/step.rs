@@ -109,7 +109,7 @@ impl Step {
 
     /// The smaller one of `known` and the smallest load of the step.
     #[must_use]
-    pub(crate) fn smallest_load(&self, known: f64) -> f64 {
+    pub(super) fn smallest_load(&self, known: f64) -> f64 {
         if self.n[0] - spread(Self::range(&self.n, self.order), self.length) >= known {
             return known;
         }

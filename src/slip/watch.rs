@@ -170,7 +170,7 @@ impl Watch {
         let finite = (motion.a + motion.u).is_finite();
         let controlled = start >= self.switch_on || !self.switch_on.is_finite();
         if controlled && finite {
-            self.n_min = step.smallest_load(self.n_min);
+            self.n_min = motion.smallest_load(self.n_min);
             self.peak = step.largest_force(self.peak);
             if motion.is_at_limit() {
                 self.time_at_limit += step.length;
@@ -333,11 +333,7 @@ impl Watch {
                 Outcome::Sliding => Summary::after(self.switch_on, self.unsettled),
                 _ => f64::NAN,
             },
-            // A limit is passed by the noise of a step at most.
-            n_min: match motion.parameters().feedback.limits.load {
-                [least, _] if least > 0.0 => self.n_min.max(least),
-                _ => self.n_min,
-            },
+            n_min: self.n_min,
             peak: self.peak,
             time_at_limit: self.time_at_limit,
             share_at_limit: self.time_at_limit / Summary::after(self.switch_on, motion.t),

@@ -35,7 +35,7 @@ fn a_load_that_is_held_is_told() {
         (share * (decided - 70.0) - time).abs() < 1e-9 * time,
         "{told}"
     );
-    let csv = folder.run(&["export", "case.h5", "--to", "case.csv"]);
+    let csv = folder.run(&["export", "case.h5", "-o", "case.csv"]);
     expect(&csv, 0, "");
     let csv = std::fs::read_to_string(folder.path().join("case.csv")).unwrap();
     let mut rows = csv.lines();
@@ -58,11 +58,7 @@ fn a_pull_stays_within_its_limits() {
     let case = CASE.replace("alpha_n = -10.0\ntau = 0.5\nload_min = 0.6\n", limits);
     let folder = Folder::with(&[("case.toml", &case)]);
     expect(&folder.run(&["simulate", "case.toml"]), 0, "time_at_limit");
-    expect(
-        &folder.run(&["export", "case.h5", "--to", "case.csv"]),
-        0,
-        "",
-    );
+    expect(&folder.run(&["export", "case.h5", "-o", "case.csv"]), 0, "");
     let csv = std::fs::read_to_string(folder.path().join("case.csv")).unwrap();
     let mut rows = csv.lines();
     let mut names = rows.next().unwrap().split(',');
@@ -89,19 +85,19 @@ fn limits_that_exclude_what_they_limit_are_refused() {
     for (more, says) in [
         (
             &["--v0", "0.1", "--v-max", "0.05"][..],
-            "--v-max = 0.05 is below --v0 = 0.1",
+            "--v-max = 0.05 is not above --v0 = 0.1",
         ),
         (
             &["--v0", "0.1", "--v-min", "0.2"],
-            "--v-min = 0.2 is above --v0 = 0.1",
+            "--v-min = 0.2 is not below --v0 = 0.1",
         ),
         (
             &["--v0", "0.1", "--load-max", "0.5"],
-            "--load-max = 0.5 is below --normal-load = 1",
+            "--load-max = 0.5 is not above --normal-load = 1",
         ),
         (
             &["--v0", "0.1", "--load-min", "3", "--load-max", "2"],
-            "--load-max = 2 is below --load-min = 3",
+            "--load-max = 2 is not above --load-min = 3",
         ),
         (
             &["--v0", "0.1", "--load-min=-1"],
@@ -125,8 +121,8 @@ fn limits_that_exclude_what_they_limit_are_refused() {
     let case = CASE.replace("load_min = 0.6", "load_min = 1.5");
     let folder = Folder::with(&[("case.toml", &case)]);
     let refused = folder.run(&["simulate", "case.toml"]);
-    expect(&refused, 2, "load_min = 1.5 is above normal_load = 1");
-    expect(&refused, 2, "load_min <= normal_load <= load_max");
+    expect(&refused, 2, "load_min = 1.5 is not below normal_load = 1");
+    expect(&refused, 2, "load_min < normal_load < load_max");
     assert!(err(&refused).contains("10 │"), "{}", err(&refused));
 }
 
@@ -139,7 +135,7 @@ fn limits_hold_for_every_cell_of_a_sweep() {
     let unlimited = sweep.replace("v_max = 0.5\n", "");
     let folder = Folder::with(&[("sweep.toml", sweep), ("unlimited.toml", &unlimited)]);
     let refused = folder.run(&["run", "sweep.toml"]);
-    expect(&refused, 2, "v_max = 0.5 is below v0 = 0.9");
+    expect(&refused, 2, "v_max = 0.5 is not above v0 = 0.9");
     let refused = folder.run(&["run", "unlimited.toml"]);
     expect(
         &refused,
@@ -175,4 +171,50 @@ fn stick_slip_persists_up_to_the_largest_pull() {
     assert_eq!(near["outcome"], "persists", "{near}");
     assert_eq!(near["vc_lower"], 0.3, "{near}");
     assert!(near["vc"].is_null(), "{near}");
+}
+
+/// With a smallest load nothing lifts off, however small it is; and no load below it is told.
+#[test]
+fn a_load_that_is_held_never_lifts_off() {
+    let folder = Folder::new();
+    for least in ["1e-10", "1e-6", "1e-3"] {
+        let control = ["--alpha-n=-10", "--tau", "5", "--load-min", least, "--json"];
+        let told = folder.run(&flags("vc", &control));
+        expect(&told, 0, "");
+        let told = serde_json::from_str::<serde_json::Value>(&out(&told)).unwrap();
+        assert_ne!(told["outcome"], "lift-off", "{told}");
+        assert!(told["v_liftoff"].is_null(), "{told}");
+    }
+    let control = [
+        "--alpha-n=-10",
+        "--tau",
+        "0.5",
+        "--load-min",
+        "0.95",
+        "--json",
+    ];
+    let told = out(&folder.run(&flags("vc", &control)));
+    let told = serde_json::from_str::<serde_json::Value>(&told).unwrap();
+    assert_eq!(told["n_min"], 0.95, "{told}");
+}
+
+/// A v0 that is left aside is not compared with limits; the windows of v_c begin at the smallest
+/// pull.
+#[test]
+fn critical_velocities_are_looked_for_within_the_limits() {
+    let folder = Folder::new();
+    let control = [
+        "--alpha-v=-0.33",
+        "--tau",
+        "4.15",
+        "--v0",
+        "0.1",
+        "--v-min",
+        "0.2",
+        "--json",
+    ];
+    let told = folder.run(&flags("vc", &control));
+    expect(&told, 0, "--v0 is left aside");
+    let told = serde_json::from_str::<serde_json::Value>(&out(&told)).unwrap();
+    assert_eq!(told["windows"][0][0], 0.2, "{told}");
 }

@@ -38,7 +38,17 @@ impl SweepFile<'_> {
             return Err(self.given.unmet(no_meaning(key), Some(place)));
         }
         self.check_needs(&self.spec.fixed, Stage::Protocol)?;
-        limit_spec::check(&self.given, self.document.key("axes"))
+        let fixed = limit_spec::check(&self.given, self.document.key("axes"))?;
+        let none = |p| self.asked(&fixed).values(p).any(|value| value == 0.0);
+        if none(Parameter::Gamma) && none(Parameter::DampingRatio) {
+            let message = "gamma = 0 is outside its range: greater than 0 without damping_ratio";
+            return Err(SpecError {
+                span: self.given.place(Parameter::Gamma).cloned(),
+                ..SpecError::whole(message)
+                    .help("without either a slip is not damped, and stick-slip persists")
+            });
+        }
+        Ok(fixed)
     }
 
     /// Checks a sweep of a system. Returns the parameters that are no axes.

@@ -21,9 +21,14 @@ impl Motion {
         let p = &self.parameters;
         let Gains { alpha_v, alpha_n } = p.feedback.gains;
         let limits = p.feedback.limits;
+        let [_, most] = limits.load;
+        let least = match limits.holds_load() {
+            true => limits.load[0],
+            false => f64::NEG_INFINITY,
+        };
         [
             Span::of(p.v0, alpha_v, limits.velocity),
-            Span::of(1.0, alpha_n, limits.load),
+            Span::of(1.0, alpha_n, [least, most]),
         ]
     }
 
@@ -64,8 +69,13 @@ impl Motion {
         let signal = &signal[..=self.step.order];
         let slack = self.signal_noise();
         let of_velocity = velocity.left(self.held.velocity, signal, slack, length);
-        let of_load = load.left(self.held.load, signal, slack, of_velocity.unwrap_or(length));
-        of_load.map(|s| (s, 3)).or(of_velocity.map(|s| (s, 2)))
+        let before = of_velocity.unwrap_or(length);
+        let of_load = load.left(self.held.load, signal, slack, before);
+        match (of_load, of_velocity) {
+            (Some(s), Some(of_velocity)) if s >= of_velocity => Some((s, 2)),
+            (Some(s), _) => Some((s, 3)),
+            (None, of_velocity) => of_velocity.map(|s| (s, 2)),
+        }
     }
 
     /// What acts in a step: an actuator at a limit stays there, whatever S is.

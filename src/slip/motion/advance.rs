@@ -54,7 +54,7 @@ impl Motion {
         let delay = past.first();
         let limit = self.limit(now, &delay, horizon);
         let radius = self.expand_within(now, limit);
-        if self.step.n[0] <= 0.0 {
+        if self.step.n[0] <= 0.0 && !self.parameters.feedback.limits.holds_load() {
             self.step.length = 0.0;
             return Some(Event::LiftOff);
         }

@@ -1,6 +1,7 @@
 //! What ends a step: zeros of its polynomials, told apart from rounding.
 
 use super::{Event, Mode, Motion, ROUNDING};
+use crate::model::Feedback;
 use crate::model::law::Crossing;
 use crate::model::law::FrictionSeries;
 use crate::model::series::{Coefficients, MOST_ORDER, first_zero};
@@ -23,7 +24,8 @@ impl Motion {
                 first = Some((s, event));
             }
         };
-        if self.parameters.feedback.gains.alpha_n != 0.0 {
+        let Feedback { gains, limits, .. } = self.parameters.feedback;
+        if gains.alpha_n != 0.0 && !limits.holds_load() {
             consider(first_zero(&step.n[range], length), Event::LiftOff);
         }
         if self.mode == Mode::Stick {
