@@ -376,7 +376,6 @@ catalogue! {
                 help: "Smallest load of the actuator, in motions; above 0 nothing lifts off \
                     [default: 0]",
             }),
-            page: Some(Page::new([0.0, 1.0], [0.0, 0.95]).folded(Folded::Model)),
             ..ROW
         };
         /// The largest load of the actuator.
