@@ -7,6 +7,9 @@
 //! 0.1, and of event times, against this integrator at its tightest. Medians of rounds; a round is
 //! repeated until it takes some milliseconds.
 //!
+//! At the end: what a law costs that is given as a formula, beside the built-in law of the same
+//! form.
+//!
 //! `-- --write-reference FOLDER` writes what it gives at its tightest: `smooth.csv`,
 //! `hybrid-3a.csv`, `hybrid-3b.csv` with a and ẋ in a line, and the times of events in
 //! `…-events.csv`. `-- --reference FOLDER` measures errors against such files and prints one line
@@ -18,6 +21,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use slipmap::model::{Dashpots, Feedback, FrictionLaw};
+use slipmap::setting::Setting;
+use slipmap::setting::formula::GivenFormula;
+use slipmap::setting::law_kind::LawKind;
 use slipmap::slip::motion::{Accuracy, Event, Motion, Parameters};
 
 const END: f64 = 200.0;
@@ -33,8 +39,28 @@ struct Problem {
     a: f64,
 }
 
+/// The letter's law as the law of its name and as a formula.
+fn laws() -> [FrictionLaw; 2] {
+    let formula = GivenFormula::read("mu0/(1 + v/v_s)").expect("an expression");
+    let given = [("mu0", 0.5), ("v_s", 0.5), ("v0", 0.1), ("tau", 1.0)];
+    let setting = Setting::checked(given, Some(LawKind::Formula(formula)), &[]);
+    let formula = setting.expect("a setting").friction_law();
+    [
+        FrictionLaw::weakening(0.5, 0.5, 1.0).expect("a law"),
+        formula.expect("a law").expect("a law"),
+    ]
+}
+
+/// Stribeck's law as the law of its name and as a formula, on the last problem.
+fn stribeck_laws() -> [FrictionLaw; 2] {
+    [
+        FrictionLaw::stribeck(0.3, 0.2, 1.0).expect("a law"),
+        FrictionLaw::stribeck_with(0.3, 0.2, 1.0, (2.0, 0.0)).expect("a law"),
+    ]
+}
+
 fn problems() -> [Problem; 3] {
-    let law = FrictionLaw::weakening(0.5, 0.5, 1.0).expect("a law");
+    let [law, _] = laws();
     let letter = |v0, alpha_v, alpha_n, tau, switch_on| Parameters {
         law: law.clone(),
         velocity_unit: 1.0,
@@ -216,6 +242,34 @@ fn print_table() {
     }
 }
 
+/// What a formula costs beside the built-in law of the same form, at 1e-9: rounds in turn.
+fn print_formulas() {
+    println!("\nformula     built-in, µs per unit  formula  ratio");
+    let [_, _, last] = problems();
+    for (name, laws) in [("hybrid-3b", laws()), ("stribeck-3b", stribeck_laws())] {
+        let [built_in, formula] = laws.map(|law| {
+            let parameters = Parameters {
+                law,
+                ..last.parameters.clone()
+            };
+            Problem { parameters, ..last }
+        });
+        let mut times = [const { Vec::new() }; 2];
+        for _ in 0..ROUNDS {
+            times[0].push(built_in.time(1e-9));
+            times[1].push(formula.time(1e-9));
+        }
+        let [built_in, formula] = times.map(|mut times| {
+            times.sort_by(f64::total_cmp);
+            times[ROUNDS / 2]
+        });
+        println!(
+            "{name:<11} {built_in:<22.3} {formula:<8.3} {:.3}",
+            formula / built_in
+        );
+    }
+}
+
 fn main() {
     if let Some(folder) = option("--write-reference") {
         write_reference(folder.as_ref());
@@ -223,5 +277,6 @@ fn main() {
         print_lines(folder.as_ref());
     } else {
         print_table();
+        print_formulas();
     }
 }

@@ -181,13 +181,16 @@ impl Args {
             }
         }
         let flag = |parameter| self.parameters.given(parameter);
-        let asked = self.system.read_but_delay(flag)?;
+        let asked = self.system.read_but_delay(self.parameters.sets(), flag)?;
         let asked = asked.ok_or_else(|| Failure::bad_input("--system is not given"))?;
         let searched = self.searched(&asked.setting)?;
         let delay = !asked.setting.get(Parameter::Tau).is_nan();
         let name = searched.name();
         let known = searched.known().and_then(flag).is_some();
-        let fixed = [(delay, "tau"), (known || self.system.sets(name), name)];
+        let fixed = [
+            (delay, "tau"),
+            (known || self.parameters.sets().has(name), name),
+        ];
         if let Some((_, fixed)) = fixed.into_iter().find(|(given, _)| *given) {
             return Err(Failure::bad_input_with_help(
                 format!("a value of {fixed} is given, which is searched"),

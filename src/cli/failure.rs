@@ -60,6 +60,15 @@ impl Failure {
         ))
     }
 
+    /// Bad input without a place.
+    pub(super) fn of_input(error: SpecError) -> Self {
+        let diagnostic = shown(error.message);
+        Self::BadInput(Report::new(match error.help {
+            Some(help) => diagnostic.with_help(visible(&help)),
+            None => diagnostic,
+        }))
+    }
+
     /// Bad input at a place of a file.
     pub(super) fn in_file(error: SpecError, name: &str, text: &str) -> Self {
         let name = visible_line(name);

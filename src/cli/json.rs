@@ -51,6 +51,12 @@ impl Inputs {
         }
         if let Some(law) = setting.law() {
             inputs = inputs.and("friction", law.name());
+            if let LawKind::Formula(formula) = law {
+                inputs = inputs.and("mu_k", formula.text());
+                let own = setting.own().map(|(own, value)| (&*own.name, value));
+                let set: BTreeMap<&str, f64> = own.collect();
+                inputs = inputs.and("set", set);
+            }
             if let LawKind::Table(points) = law {
                 inputs = inputs.and("speeds", points.speeds());
                 inputs = inputs.and("mu_k", points.mu_k());

@@ -43,6 +43,7 @@
 //! - `say`: messages to the user
 //! - `schema`: `slipmap schema`
 //! - `serve`: `slipmap serve`
+//! - `sets`: the flag `--set`: values of parameters that a system or a formula names
 //! - `setting`: a setting from a file instead of flags, and files of settings
 //! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
 //! - `signals`: signals that stop a command in order, even while it reads or draws
@@ -99,6 +100,7 @@ mod run;
 mod say;
 mod schema;
 mod serve;
+mod sets;
 mod setting;
 mod show;
 mod signals;

@@ -2,23 +2,27 @@
 
 use std::marker::PhantomData;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::model::{ModelError, RateAndState};
 use crate::setting::Parameter;
+use crate::setting::formula::GivenFormula;
 use crate::setting::law_kind::{LawKind, NO_MOTIONS, NamedLaw};
 use crate::setting::parameter::Group;
+use crate::setting::quantity::Quantity;
 use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::units::Units;
 use crate::setting::values::Setting;
-use crate::text::Shown;
+use crate::text::{Shown, SpecError};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
 use super::output::{warn_beyond_curve, warn_of_idle_delay};
-use super::parameter_values::Values;
+use super::parameter_values::{NO_NUMBER, Values};
 use super::say;
+use super::sets::SetArgs;
 use super::sweep_file::read_table;
 
 /// The flags of a friction law besides its parameters, and of units.
@@ -34,6 +38,8 @@ struct LawArgs {
     /// [default: dimensionless]
     #[arg(long, value_name = "UNITS", value_parser = Units::read)]
     units: Option<Units>,
+    #[command(flatten)]
+    sets: SetArgs,
 }
 
 /// Friction laws by name, with their formulas; those without motions are hidden where motions are
@@ -46,7 +52,9 @@ fn law_names(of_motions: bool) -> PossibleValuesParser {
     });
     let table = PossibleValue::new(LawKind::TABLE)
         .help("The points in the file --table, joined by monotone cubics");
-    PossibleValuesParser::new(formulas.chain([table]))
+    let formula = PossibleValue::new(LawKind::FORMULA)
+        .help("The expression --mu-k in the speed v, with parameters of its own");
+    PossibleValuesParser::new(formulas.chain([table, formula]))
 }
 
 /// The failure for a law with a state where motions are followed.
@@ -55,10 +63,20 @@ fn no_motions() -> Failure {
     Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
 }
 
+/// The failure for parameters that nothing names.
+fn no_formula() -> Failure {
+    Failure::bad_input_with_help(
+        "--set gives a parameter that a system or a formula names: neither is given",
+        "--system NAME, or --friction formula --mu-k 'EXPRESSION'",
+    )
+}
+
 /// A point of parameter space.
 #[derive(Debug)]
 pub(super) struct ParameterArgs<A: Asks = OfSliding> {
     values: Values,
+    /// The text of --mu-k.
+    mu_k: Option<String>,
     law: LawArgs,
     asks: PhantomData<A>,
 }
@@ -79,7 +97,7 @@ impl<A: Asks> ParameterArgs<A> {
         let parameter = Parameter::from_name(arg.get_id().as_str());
         let of_slope = |p: Parameter| p.group() == Group::Sliding;
         let moves = |p: Parameter| !NOT_IN_MOTIONS.contains(&p) && !LawKind::only_with_state(p);
-        let refused = |p: Parameter| of_slope(p) || !moves(p);
+        let refused = |p: Parameter| (of_slope(p) && p != Parameter::MuK) || !moves(p);
         let in_vain = (A::LAW && parameter.is_some_and(refused))
             || (A::SEARCHES_DELAY && parameter == Some(Parameter::Tau));
         arg.hide(in_vain)
@@ -107,9 +125,15 @@ impl<A: Asks> Args for ParameterArgs<A> {
 impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let wanted = |group| Self::without_law(group) || Self::of_law(group);
+        let mut values = Values::of(matches, wanted);
+        let law = LawArgs::from_arg_matches(matches)?;
+        if law.friction.as_deref() == Some(LawKind::FORMULA) {
+            values.forget(Parameter::MuK);
+        }
         Ok(Self {
-            values: Values::of(matches, wanted),
-            law: LawArgs::from_arg_matches(matches)?,
+            values,
+            mu_k: Values::text(matches).cloned(),
+            law,
             asks: PhantomData,
         })
     }
@@ -133,8 +157,54 @@ impl<A: Asks> ParameterArgs<A> {
         self.values.get(parameter)
     }
 
+    pub(super) fn sets(&self) -> &SetArgs {
+        &self.law.sets
+    }
+
+    /// The formula of the flags, with values of its own parameters.
+    fn formula(&self) -> Result<LawKind, Failure> {
+        let Some(text) = &self.mu_k else {
+            return Err(Failure::bad_input_with_help(
+                "--mu-k is not given: the formula law is an expression in the speed v",
+                "--mu-k 'mu0 + (mu_s - mu0)*exp(-v/v_s)' --mu0 0.3 --v-s 0.1; other names by \
+                 --set NAME=VALUE",
+            ));
+        };
+        let formula = GivenFormula::read(text);
+        let formula = formula.map_err(|error| Failure::in_file(error, "--mu-k", text))?;
+        let mut setting = Setting::new(Some(LawKind::Formula(formula.clone())));
+        for set in self.law.sets.each()? {
+            let own = formula.own_named(&set.name);
+            let own = own.ok_or_else(|| set.refused(formula.unknown(&set.name)))?;
+            let value = own.check(set.value);
+            let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
+            setting.vary(&Quantity::Own(Arc::clone(own)), value);
+        }
+        let missing = setting.formula().and_then(|of| of.missing(|_| false));
+        match (missing, setting.law()) {
+            (None, Some(law)) => Ok(law.clone()),
+            (error, _) => Err(error.map_or_else(no_formula, Failure::of_input)),
+        }
+    }
+
+    /// Refuses parts of a formula where there is none.
+    fn check_no_formula(&self) -> Result<(), Failure> {
+        match (&self.mu_k, self.given(Parameter::MuK)) {
+            (Some(text), None) => Err(Failure::bad_input_with_help(
+                format!("--mu-k {text}: {NO_NUMBER}"),
+                "an expression in v is for --friction formula",
+            )),
+            _ if self.law.sets.any() => Err(no_formula()),
+            _ => Ok(()),
+        }
+    }
+
     /// The friction law of the flags, with the points of its file.
     fn law(&self) -> Result<Option<LawKind>, Failure> {
+        if self.law.friction.as_deref() == Some(LawKind::FORMULA) && self.law.table.is_none() {
+            return self.formula().map(Some);
+        }
+        self.check_no_formula()?;
         let help =
             "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
         match (self.law.friction.as_deref(), &self.law.table) {
@@ -250,6 +320,7 @@ impl<A: Asks> ParameterArgs<A> {
             friction,
             table,
             units,
+            sets: _,
         } = &self.law;
         let flags = friction.is_some() || table.is_some() || units.is_some();
         flags || Parameter::ALL.into_iter().any(given)

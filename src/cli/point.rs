@@ -72,7 +72,8 @@ impl Args {
         let of_system = match &self.system.system {
             Some(_) => {
                 self.point.check_alone("--system", &OTHERS)?;
-                self.system.read(|p| self.point.given(p))?
+                self.system
+                    .read(self.point.sets(), |p| self.point.given(p))?
             }
             None => self.point.cell_of_system()?,
         };

@@ -9,6 +9,7 @@ use super::asked::Asked;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
+use super::sets::SetArgs;
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
@@ -37,6 +38,11 @@ impl PointArgs {
         Ok(Some(Asked::of_system(setting, "map", map)))
     }
 
+    /// The values of parameters that a system or a formula names.
+    pub(super) fn sets(&self) -> &SetArgs {
+        self.parameters.sets()
+    }
+
     /// The value of the flag of a parameter.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         self.parameters.given(parameter)
@@ -51,7 +57,7 @@ impl PointArgs {
 
     /// The setting of the block, from a file, a map or flags.
     pub(super) fn read(&self) -> Result<Asked, Failure> {
-        let given = self.parameters.any_but(&[]);
+        let given = self.parameters.any_but(&[]) || self.sets().any();
         let block = |setting, units| Asked {
             setting,
             units,

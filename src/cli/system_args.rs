@@ -7,11 +7,12 @@ use std::sync::Arc;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::{SystemModel, shipped};
 use crate::setting::{Parameter, Setting};
-use crate::text::Shown;
+use crate::text::SpecError;
 use crate::text::nearest::did_you_mean;
 
 use super::asked::Asked;
 use super::failure::Failure;
+use super::sets::{SetArgs, given_twice};
 use super::sweep_file::read_system;
 
 #[derive(Debug, clap::Args)]
@@ -19,28 +20,6 @@ pub(super) struct SystemArgs {
     /// A system from a file, or of the program by its name, in the place of the letter's
     #[arg(long, value_name = "FILE|NAME")]
     pub system: Option<String>,
-    /// With --system: the value of one of its parameters; once for each that is not at its default
-    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_set, requires = "system",
-          allow_hyphen_values = true)]
-    set: Vec<Set>,
-}
-
-/// A value of a parameter, as given by the flag.
-#[derive(Debug, Clone, PartialEq)]
-struct Set {
-    name: String,
-    value: f64,
-}
-
-fn parse_set(text: &str) -> Result<Set, String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("expected NAME=VALUE, for example zeta=0.02")?;
-    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    Ok(Set {
-        name: name.trim().to_owned(),
-        value: value.ok_or("the value after = must be a finite number")?,
-    })
 }
 
 /// The system with this name, or in the file at this path.
@@ -63,14 +42,15 @@ pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
 pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
 
 impl SystemArgs {
-    /// The system at its setting; none without a system. `flag` gives the value of the flag for one
+    /// The system at its setting, with its own parameters in `sets`; none without a system. `flag` gives the value of the flag for one
     /// of [`OTHERS`].
     pub(super) fn read(
         &self,
+        sets: &SetArgs,
         flag: impl Fn(Parameter) -> Option<f64>,
     ) -> Result<Option<Asked>, Failure> {
         let tau = Parameter::Tau;
-        match self.read_but_delay(flag)? {
+        match self.read_but_delay(sets, flag)? {
             Some(asked) if asked.setting.get(tau).is_nan() => Err(Failure::bad_input_with_help(
                 "--tau is not given",
                 format!("--tau: {}, {}", tau.long_name(), tau.allowed()),
@@ -79,15 +59,11 @@ impl SystemArgs {
         }
     }
 
-    /// Whether `--set` gives a parameter of that name.
-    pub(super) fn sets(&self, name: &str) -> bool {
-        self.set.iter().any(|set| set.name == name)
-    }
-
     /// The system at a setting whose delay need not be given, and is NaN then; none without a
     /// system. `flag` as in [`SystemArgs::read`].
     pub(super) fn read_but_delay(
         &self,
+        sets: &SetArgs,
         flag: impl Fn(Parameter) -> Option<f64>,
     ) -> Result<Option<Asked>, Failure> {
         let Some(named) = &self.system else {
@@ -96,18 +72,13 @@ impl SystemArgs {
         let model = Arc::new(system_of(named)?);
         let mut setting = Setting::of_system(Arc::clone(&model));
         let mut others = OTHERS.map(flag);
-        for (i, set) in self.set.iter().enumerate() {
-            if self.set[..i].iter().any(|before| before.name == set.name) {
-                return Err(given_twice(&set.name));
-            }
+        for set in sets.each()? {
             let own = model.parameters.iter().find(|own| own.name == set.name);
             let other = OTHERS.into_iter().position(|p| p.name() == set.name);
             match (own, other) {
                 (Some(own), _) => {
-                    let value = own.check(set.value).map_err(|why| {
-                        let value = Shown(set.value);
-                        Failure::bad_input(format!("--set {}={value}: {why}", set.name))
-                    })?;
+                    let value = own.check(set.value);
+                    let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
                     setting.vary(&Quantity::Own(Arc::clone(own)), value);
                 }
                 (None, Some(other)) if others[other].is_some() => {
@@ -132,10 +103,6 @@ impl SystemArgs {
         }
         Ok(Some(Asked::of_system(setting, "system", named.clone())))
     }
-}
-
-fn given_twice(name: &str) -> Failure {
-    Failure::bad_input(format!("{name} is given twice"))
 }
 
 fn unknown(name: &str, model: &SystemModel) -> Failure {

@@ -115,17 +115,17 @@ impl Known {
     #[must_use]
     pub fn all() -> Self {
         let formulas = NamedLaw::all().iter().map(KnownLaw::of);
-        let table = KnownLaw {
-            name: LawKind::TABLE,
+        let more = LawKind::MORE.map(|name| KnownLaw {
+            name,
             formula: None,
             parameters: Vec::new(),
             needed: 0,
             motions: true,
-        };
+        });
         Self {
             version: crate::VERSION,
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
-            laws: formulas.chain([table]).collect(),
+            laws: formulas.chain(more).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
         }
     }

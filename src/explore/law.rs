@@ -21,7 +21,7 @@ pub struct LawCurve {
     pub law: &'static str,
     /// Its formula; none for a table.
     #[cfg_attr(feature = "serve", schema(required))]
-    pub formula: Option<&'static str>,
+    pub formula: Option<String>,
     /// 201 speeds, evenly spaced.
     pub v: Vec<f64>,
     /// μ_K there, at speed 0 its limit.
@@ -71,7 +71,8 @@ impl LawCurve {
         Ok(Self {
             law: kind.name(),
             formula: match kind {
-                LawKind::Named(law) => Some(law.formula()),
+                LawKind::Named(law) => Some(law.formula().into()),
+                LawKind::Formula(formula) => Some(formula.text().into()),
                 LawKind::Table(_) => None,
             },
             mu_k: v.iter().map(|v| law.mu_k(*v)).collect(),
@@ -79,7 +80,7 @@ impl LawCurve {
             v,
             mu_s: law.mu_s(),
             points: match kind {
-                LawKind::Named(_) => Vec::new(),
+                LawKind::Named(_) | LawKind::Formula(_) => Vec::new(),
                 LawKind::Table(table) => {
                     let mu_k = table.mu_k().iter();
                     table

@@ -10,7 +10,10 @@
 
 use num_complex::Complex64;
 
-pub(crate) use libm::{acos, atan2, cbrt, cos, exp, expm1, hypot, log as ln, pow, sin, sincos};
+pub(crate) use libm::{
+    acos, atan, atan2, cbrt, cos, cosh, exp, expm1, hypot, log as ln, log1p as ln_1p, pow, sin,
+    sincos, sinh, tanh,
+};
 
 /// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power
 /// is the inverse of the positive one.
@@ -108,7 +111,7 @@ mod tests {
     #[test]
     fn results_are_those_of_the_c_library_but_for_rounding() {
         type Function = fn(f64) -> f64;
-        let all: [(&str, [Function; 2], f64, f64); 10] = [
+        let all: [(&str, [Function; 2], f64, f64); 15] = [
             ("sin", [sin, f64::sin], -1e4, 1e4),
             ("cos", [cos, f64::cos], -1e4, 1e4),
             ("sincos", [|x| sincos(x).0, f64::sin], -4.0, 4.0),
@@ -119,6 +122,11 @@ mod tests {
             ("cbrt", [cbrt, f64::cbrt], 0.0, 1e4),
             ("pow", [|x| pow(x, -0.07), |x| x.powf(-0.07)], 1e-9, 1e3),
             ("atan2", [|x| atan2(x, 0.7), |x| x.atan2(0.7)], -9.0, 9.0),
+            ("atan", [atan, f64::atan], -9.0, 9.0),
+            ("sinh", [sinh, f64::sinh], -9.0, 9.0),
+            ("cosh", [cosh, f64::cosh], -9.0, 9.0),
+            ("tanh", [tanh, f64::tanh], -9.0, 9.0),
+            ("ln_1p", [ln_1p, f64::ln_1p], -0.9, 9.0),
         ];
         for (name, [ours, theirs], from, to) in all {
             for i in 0..20_000 {

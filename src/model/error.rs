@@ -16,6 +16,8 @@ pub struct ModelError {
     pub value: f64,
     /// The range allowed, in words.
     pub allowed: &'static str,
+    /// The speed at which a friction law has this value, where that is to be told.
+    pub at_speed: Option<f64>,
 }
 
 impl ModelError {
@@ -45,6 +47,15 @@ impl ModelError {
             parameter: "friction",
             value: f64::NAN,
             allowed,
+            at_speed: None,
+        }
+    }
+
+    /// The error of a value that a friction law has at this speed.
+    pub(crate) const fn at_speed(self, speed: f64) -> Self {
+        Self {
+            at_speed: Some(speed),
+            ..self
         }
     }
 
@@ -53,12 +64,14 @@ impl ModelError {
             parameter,
             value,
             allowed,
+            at_speed,
         } = self;
+        let at = at_speed.map_or_else(String::new, |v| format!(" at the speed {}", Shown(v)));
         match *parameter {
             // An error of the law has no value.
             "friction" => format!("friction: {allowed} is needed"),
             _ => format!(
-                "{parameter} = {} is outside its range: {allowed}",
+                "{parameter} = {}{at} is outside its range: {allowed}",
                 Shown(*value)
             ),
         }
@@ -78,6 +91,7 @@ impl ModelError {
                 parameter,
                 value,
                 allowed,
+                at_speed: None,
             })
         }
     }

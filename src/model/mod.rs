@@ -12,6 +12,7 @@
 //!
 //! Source: F.-J. Elmer, *Controlling friction* (1997), "the letter" throughout this crate.
 //!
+//! - `ball`: real numbers with a bound on their error, and intervals
 //! - `elementary`: sin, exp and the like, the same bits on every processor; the only file that
 //!   imports libm
 //! - `error`: errors of parameters out of range, and the format of numbers in messages
@@ -26,6 +27,7 @@
 //! - `stop`: a flag that ends computations nobody waits for any more
 //! - `table`: a monotone cubic curve through measured points
 
+pub(crate) mod ball;
 pub(crate) mod elementary;
 mod error;
 mod feedback;

@@ -220,11 +220,11 @@ impl SlidingPoint {
     ///
     /// # Errors
     /// `v0` must be finite and greater than zero: the model is linear only about steady forward
-    /// sliding.
+    /// sliding. So must μ_K be there.
     pub fn of_law(law: &FrictionLaw, v0: f64) -> Result<Self, ModelError> {
         let v0 = ModelError::positive("v0", v0)?;
         Ok(Self {
-            mu_k: law.mu_k(v0),
+            mu_k: law.posed_at(v0)?,
             mu_prime: law.mu_prime(v0),
         })
     }

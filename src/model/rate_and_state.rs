@@ -76,14 +76,14 @@ impl RateAndState {
             "slip_distance",
         ],
         needed: 5,
-        optional: "load_memory",
-        law: Made::WithState(|of, load_memory| Self {
+        optional: &["load_memory"],
+        law: Made::WithState(|of| Self {
             mu0: of[0],
             v_star: of[1],
             direct_effect: of[2],
             evolution_effect: of[3],
             slip_distance: of[4],
-            load_memory,
+            load_memory: of[5],
         }),
     };
 
@@ -106,6 +106,7 @@ impl RateAndState {
                 value: self.mu0,
                 allowed: "so large that mu0 + (direct_effect - evolution_effect) ln(v0/v_star), \
                     the coefficient of steady sliding, is greater than 0",
+                at_speed: None,
             })
         }
     }

@@ -162,7 +162,7 @@ impl std::str::FromStr for CaseSpec {
             "it is a key of a sweep file, of a map: `slipmap run` takes it",
         );
         let title = document.take("title", Entry::line).unwrap_or_default();
-        let given = GivenParameters::of(&mut document, moves);
+        let given = GivenParameters::of(&mut document, text, moves);
         let switch_on = document.take("switch_on", read_switch_on);
         let trace = document.take("trace", read_trace).unwrap_or_default();
         let units = document.take("units", read_units).unwrap_or_default();

@@ -22,6 +22,11 @@ pub(crate) fn command_line(
         Some(LawKind::Table(_)) => return None,
         Some(law) => format!(" --friction={}", law.name()),
     };
+    let formula = setting.formula().map_or_else(String::new, |formula| {
+        let own = setting.own().filter(|(_, value)| !value.is_nan());
+        let sets = own.map(|(own, value)| format!(" --set={}={value}", own.name));
+        format!(" --mu-k='{}'{}", formula.text(), sets.collect::<String>())
+    });
     let flags = Parameter::ALL.into_iter().filter_map(|parameter| {
         let value = setting.get(parameter);
         let default = parameter.default_value().map(f64::to_bits);
@@ -30,7 +35,7 @@ pub(crate) fn command_line(
         Some(format!(" --{flag}={value}"))
     });
     Some(format!(
-        "slipmap {command}{law}{}",
+        "slipmap {command}{law}{formula}{}",
         flags.collect::<String>()
     ))
 }

@@ -2,14 +2,18 @@
 //! every key.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
+use super::expression::Written;
+use super::formula::GivenFormula;
 use super::friction_table::GivenTable;
 use super::keys::FRICTION_TABLE;
 use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
+use super::system::parameter::OwnParameter;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
@@ -18,14 +22,37 @@ use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
-pub(super) struct GivenParameters {
+pub(super) struct GivenParameters<'t> {
+    /// The whole text of the file.
+    text: &'t str,
     values: Vec<(Parameter, f64)>,
+    /// Values of the formula's own parameters, and all that are given, with their places.
+    own_values: Vec<(Arc<OwnParameter>, f64)>,
+    own_places: Vec<(Arc<OwnParameter>, Range<usize>)>,
+    /// The formula of the friction law, and the place of its expression.
+    formula: Option<(GivenFormula, Range<usize>)>,
     law: Option<(LawKind, Range<usize>)>,
     table: GivenTable,
     places: Vec<(Parameter, Range<usize>)>,
 }
 
-impl GivenParameters {
+impl<'t> GivenParameters<'t> {
+    /// Nothing yet of the file `text`, of which `document` has the tables. The formula of a
+    /// friction law is read first: axes are of its parameters.
+    pub(super) fn begin(document: &Document, text: &'t str) -> Self {
+        let mut given = Self {
+            text,
+            ..Self::default()
+        };
+        // What is wrong with the table is told where it is read.
+        if let Some(Ok(entries)) = document.ahead("friction").map(Entry::table)
+            && let Some(Ok(formula)) = given.read_formula(&entries)
+        {
+            given.formula = Some(formula);
+        }
+        given
+    }
+
     /// Records that the file gives `parameter`, as a value or as an axis.
     pub(super) fn give(
         &mut self,
@@ -33,9 +60,7 @@ impl GivenParameters {
         key: &Range<usize>,
     ) -> Result<(), SpecError> {
         if self.place(parameter).is_some() {
-            let message = format!("{} is given twice", parameter.name());
-            return Err(SpecError::at(key.clone(), message)
-                .help("a parameter is either an axis or a fixed value"));
+            return Err(given_twice(parameter.name(), key));
         }
         self.places.push((parameter, key.clone()));
         Ok(())
@@ -43,8 +68,12 @@ impl GivenParameters {
 
     /// The tables of a document, in its order. For an unknown name, one of the parameters that the
     /// document `takes` is suggested.
-    pub(super) fn of(document: &mut Document, takes: impl Fn(Parameter) -> bool) -> Self {
-        let mut given = Self::default();
+    pub(super) fn of(
+        document: &mut Document,
+        text: &'t str,
+        takes: impl Fn(Parameter) -> bool,
+    ) -> Self {
+        let mut given = Self::begin(document, text);
         let tables = ["fixed", "friction", "start"];
         document.each(&tables, |table| given.read(table, &takes));
         given
@@ -52,8 +81,21 @@ impl GivenParameters {
 
     /// Records the parameter of an axis.
     pub(super) fn give_axis(&mut self, axis: &Entry) -> Result<Quantity, SpecError> {
-        let parameter = Parameter::from_name(axis.key)
-            .ok_or_else(|| axis.unknown(&Parameter::ALL.map(Parameter::name)))?;
+        if let Some(own) = self.own_named(axis.key) {
+            self.give_own(&own, &axis.key_span)?;
+            return Ok(Quantity::Own(own));
+        }
+        let own = self.formula.iter().flat_map(|(formula, _)| formula.own());
+        let own: Vec<_> = own.map(|(own, _)| Arc::clone(own)).collect();
+        let parameter = Parameter::from_name(axis.key).ok_or_else(|| {
+            let own = own.iter().map(|own| &*own.name);
+            let known: Vec<&str> = Parameter::ALL
+                .map(Parameter::name)
+                .into_iter()
+                .chain(own)
+                .collect();
+            axis.unknown(&known)
+        })?;
         self.give(parameter, &axis.key_span)?;
         Ok(parameter.into())
     }
@@ -152,12 +194,35 @@ impl GivenParameters {
             .chain(table)
             .collect();
         let mut law = None;
-        for entry in friction.table()? {
+        let entries = friction.table()?;
+        // Told at its place, unless something before it is wrong.
+        let formula = self.read_formula(&entries);
+        for entry in entries {
+            let of_formula = entry.key == TableColumn::MuK.name();
+            if let Some(formula) = formula.clone().filter(|_| of_formula) {
+                self.formula = Some(formula?);
+                continue;
+            }
+            if let Some(own) = self.own_named(entry.key) {
+                self.give_own(&own, &entry.key_span)?;
+                let value = own.check(entry.number()?);
+                let value = value.map_err(|why| SpecError::at(entry.span.clone(), why))?;
+                self.own_values.push((own, value));
+                continue;
+            }
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
                 None if self.table.read(&entry)? => {}
-                None => return Err(entry.unknown(&known)),
+                None => {
+                    return Err(match &self.formula {
+                        Some((formula, _)) => SpecError {
+                            span: Some(entry.key_span.clone()),
+                            ..formula.unknown(entry.key)
+                        },
+                        None => entry.unknown(&known),
+                    });
+                }
             }
         }
         let Some(law) = law else {
@@ -174,6 +239,16 @@ impl GivenParameters {
         if name == LawKind::TABLE {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
+        if name == LawKind::FORMULA {
+            let Some((formula, _)) = &self.formula else {
+                return Err(entry
+                    .error("mu_k is not given: the formula law is an expression in v")
+                    .help(
+                        "mu_k = \"mu0 + (mu_s - mu0)*exp(-v/v_s)\", and a key for each name in it",
+                    ));
+            };
+            return Ok(LawKind::Formula(formula.clone()));
+        }
         let law = LawKind::named(name).map_err(|error| SpecError {
             help: error.help,
             ..entry.error(error.message)
@@ -185,6 +260,47 @@ impl GivenParameters {
             );
         }
         Ok(law)
+    }
+
+    /// The formula of `[friction]`, with the place of its expression; none of another law.
+    fn read_formula(&self, friction: &[Entry]) -> Option<ReadFormula> {
+        let of = |key: &str| friction.iter().find(|entry| entry.key == key);
+        of("law").filter(|law| law.string().is_ok_and(|name| name == LawKind::FORMULA))?;
+        let key = TableColumn::MuK.name();
+        let written = Written::of(key, of(key)?, self.text);
+        Some(written.and_then(|written| {
+            let formula = GivenFormula::written(&written)?;
+            Ok((formula, written.span))
+        }))
+    }
+
+    /// The formula's own parameter of that name.
+    fn own_named(&self, name: &str) -> Option<Arc<OwnParameter>> {
+        let (formula, _) = self.formula.as_ref()?;
+        formula.own_named(name).cloned()
+    }
+
+    /// Records that the file gives a parameter of the formula, as a value or as an axis.
+    fn give_own(&mut self, own: &Arc<OwnParameter>, key: &Range<usize>) -> Result<(), SpecError> {
+        if self.own_places.iter().any(|(given, _)| given == own) {
+            return Err(given_twice(&own.name, key));
+        }
+        self.own_places.push((Arc::clone(own), key.clone()));
+        Ok(())
+    }
+
+    /// Checks that every parameter of the formula is given.
+    fn check_own(&self) -> Result<(), SpecError> {
+        let Some((formula, place)) = &self.formula else {
+            return Ok(());
+        };
+        let given = |own: &OwnParameter| self.own_places.iter().any(|(of, _)| **of == *own);
+        formula.missing(given).map_or(Ok(()), |error| {
+            Err(SpecError {
+                span: Some(place.clone()),
+                ..error
+            })
+        })
     }
 
     /// Checks that motions can be followed under the law, as far as the law alone decides this.
@@ -223,7 +339,8 @@ impl GivenParameters {
     /// parameter that it names or from which that follows, else the name of the law. Where a fixed
     /// μ0 is above a given μ_S, the latter is to blame.
     fn place_of(&self, error: &ModelError) -> Option<&Range<usize>> {
-        let at_rest = self.table.at_rest();
+        let formula = self.formula.as_ref().map(|(_, place)| place);
+        let at_rest = self.table.at_rest().or(formula);
         let named = Parameter::from_name(error.parameter);
         let fixed = |p: Parameter| self.values.iter().any(|(given, _)| *given == p);
         let mu_s = || match named {
@@ -280,6 +397,9 @@ impl GivenParameters {
         for (parameter, value) in &self.values {
             setting.set(*parameter, *value);
         }
+        for (own, value) in &self.own_values {
+            setting.vary(&Quantity::Own(Arc::clone(own)), *value);
+        }
         setting
     }
 
@@ -315,6 +435,7 @@ impl GivenParameters {
         let law = self.law.as_ref().map(|(law, _)| law);
         let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
         self.check_limits(optional)?;
+        self.check_own()?;
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
                 GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),
@@ -329,6 +450,14 @@ impl GivenParameters {
             }
         })
     }
+}
+
+/// A formula, with the place of its expression.
+type ReadFormula = Result<(GivenFormula, Range<usize>), SpecError>;
+
+fn given_twice(name: &str, key: &Range<usize>) -> SpecError {
+    SpecError::at(key.clone(), format!("{name} is given twice"))
+        .help("a parameter is either an axis or a fixed value")
 }
 
 impl Setting {
@@ -353,10 +482,20 @@ impl Setting {
     ) -> Result<Self, SpecError> {
         let nowhere = 0..0;
         let mut given = GivenParameters {
+            formula: match &law {
+                Some(LawKind::Formula(formula)) => Some((formula.clone(), nowhere.clone())),
+                _ => None,
+            },
             law: law.map(|law| (law, nowhere.clone())),
             ..GivenParameters::default()
         };
         let mut take = |name: &str, value| {
+            if let Some(own) = given.own_named(name) {
+                given.give_own(&own, &nowhere)?;
+                let value = own.check(value).map_err(SpecError::whole)?;
+                given.own_values.push((own, value));
+                return Ok(());
+            }
             let parameter = Parameter::from_name(name).ok_or_else(|| {
                 let law = given.law.as_ref().map(|(law, _)| law);
                 let all = Parameter::ALL.into_iter();

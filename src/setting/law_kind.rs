@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::formula::GivenFormula;
 use super::parameter::{Group, Parameter};
 use super::values::Setting;
 use crate::model::law::{Form, Made};
@@ -17,7 +18,7 @@ const MOST: usize = 8;
 pub struct NamedLaw {
     form: &'static Form,
     parameters: Vec<Parameter>,
-    optional: Parameter,
+    optional: Vec<Parameter>,
 }
 
 static NAMED: LazyLock<Vec<NamedLaw>> = LazyLock::new(|| Form::all().map(NamedLaw::of).collect());
@@ -25,15 +26,16 @@ static NAMED: LazyLock<Vec<NamedLaw>> = LazyLock::new(|| Form::all().map(NamedLa
 impl NamedLaw {
     fn of(form: &'static Form) -> Self {
         assert!(
-            form.parameters.len() <= MOST,
+            form.parameters.len() + form.optional.len() <= MOST,
             "{} has too many parameters",
             form.name
         );
         let written = |name: &str| Parameter::from_name(name).expect("a law names parameters");
+        let all = |names: &[&str]| names.iter().map(|name| written(name)).collect();
         Self {
             form,
-            parameters: form.parameters.iter().map(|name| written(name)).collect(),
-            optional: written(form.optional),
+            parameters: all(form.parameters),
+            optional: all(form.optional),
         }
     }
 
@@ -61,13 +63,14 @@ impl NamedLaw {
         Self::all().iter().find(|law| law.name() == name)
     }
 
-    /// The numbers of [`Form::parameters`] in a setting, and the optional one.
-    fn numbers(&self, setting: &Setting) -> ([f64; MOST], f64) {
+    /// What `of` makes of the numbers of [`Form::parameters`] and [`Form::optional`] in a setting.
+    fn made<T>(&self, of: fn(&[f64]) -> T, setting: &Setting) -> T {
         let mut numbers = [f64::NAN; MOST];
-        for (number, parameter) in numbers.iter_mut().zip(&self.parameters) {
+        let parameters = || self.parameters.iter().chain(&self.optional);
+        for (number, parameter) in numbers.iter_mut().zip(parameters()) {
             *number = setting.get(*parameter);
         }
-        (numbers, setting.get(self.optional))
+        of(&numbers[..parameters().count()])
     }
 }
 
@@ -78,6 +81,8 @@ pub enum LawKind {
     Named(&'static NamedLaw),
     /// [`FrictionLaw::table`].
     Table(Table),
+    /// [`FrictionLaw::formula`].
+    Formula(GivenFormula),
 }
 
 /// The name of what a law with a state is not, for messages.
@@ -89,6 +94,10 @@ pub const NO_MOTIONS: &str = "its coefficient has no value at rest, so that stic
 impl LawKind {
     /// The name of [`LawKind::Table`].
     pub const TABLE: &str = "table";
+    /// The name of [`LawKind::Formula`].
+    pub const FORMULA: &str = "formula";
+    /// The names of the laws that more than parameters describe.
+    pub(crate) const MORE: [&str; 2] = [Self::TABLE, Self::FORMULA];
 
     /// The law of this name that parameters alone describe.
     ///
@@ -97,7 +106,7 @@ impl LawKind {
     pub fn named(name: &str) -> Result<Self, SpecError> {
         NamedLaw::from_name(name).map(Self::Named).ok_or_else(|| {
             let laws = NamedLaw::all().iter().map(NamedLaw::name);
-            let meant = did_you_mean(name, laws.chain([Self::TABLE]));
+            let meant = did_you_mean(name, laws.chain(Self::MORE));
             SpecError::whole(format!("unknown friction law \"{name}\""))
                 .help(format!("{meant}known: {}", Self::names()))
         })
@@ -109,6 +118,7 @@ impl LawKind {
         match self {
             Self::Named(law) => law.name(),
             Self::Table(_) => Self::TABLE,
+            Self::Formula(_) => Self::FORMULA,
         }
     }
 
@@ -116,7 +126,7 @@ impl LawKind {
     #[must_use]
     pub fn names() -> String {
         let laws = NamedLaw::all().iter().map(NamedLaw::name);
-        laws.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
+        laws.chain(Self::MORE).collect::<Vec<_>>().join(", ")
     }
 
     /// The laws that parameters alone describe, of those with this parameter.
@@ -130,21 +140,22 @@ impl LawKind {
     pub fn with(parameter: Parameter) -> String {
         let table = (parameter == Parameter::MuS).then_some(Self::TABLE);
         let laws = Self::named_with(parameter).map(|law| law.name());
-        laws.chain(table).collect::<Vec<_>>().join(", ")
+        let more = table.into_iter().chain([Self::FORMULA]);
+        laws.chain(more).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether the law has this parameter, given or by default.
     #[must_use]
     pub fn has(&self, parameter: Parameter) -> bool {
-        parameter == self.optional() || self.parameters().contains(&parameter)
+        self.optional().contains(&parameter) || self.parameters().contains(&parameter)
     }
 
-    /// The one parameter of the law that need not be given.
+    /// The parameters of the law that need not be given.
     #[must_use]
-    pub const fn optional(&self) -> Parameter {
+    pub fn optional(&self) -> &[Parameter] {
         match self {
-            Self::Named(law) => law.optional,
-            Self::Table(_) => Parameter::MuS,
+            Self::Named(law) => &law.optional,
+            Self::Table(_) | Self::Formula(_) => &[Parameter::MuS],
         }
     }
 
@@ -166,32 +177,31 @@ impl LawKind {
     pub(super) fn with_state(&self, setting: &Setting) -> Option<RateAndState> {
         match self {
             Self::Named(law) => match law.form.law {
-                Made::WithState(made) => {
-                    let (numbers, optional) = law.numbers(setting);
-                    Some(made(&numbers, optional))
-                }
+                Made::WithState(made) => Some(law.made(made, setting)),
                 Made::OfVelocity(_) => None,
             },
-            Self::Table(_) => None,
+            Self::Table(_) | Self::Formula(_) => None,
         }
     }
 
     /// The parameters that describe the law; see [`LawKind::needed`] for how many must be given.
     #[must_use]
-    pub fn parameters(&self) -> &'static [Parameter] {
+    pub fn parameters(&self) -> &[Parameter] {
         match self {
             Self::Named(law) => &law.parameters,
             Self::Table(_) => &[],
+            Self::Formula(formula) => formula.known(),
         }
     }
 
     /// How many of [`LawKind::parameters`] must be given. If not all, the missing one follows from
     /// the others.
     #[must_use]
-    pub const fn needed(&self) -> usize {
+    pub fn needed(&self) -> usize {
         match self {
             Self::Named(law) => law.form.needed,
             Self::Table(_) => 0,
+            Self::Formula(formula) => formula.known().len(),
         }
     }
 
@@ -199,13 +209,11 @@ impl LawKind {
     pub(super) fn at(&self, setting: &Setting) -> Result<FrictionLaw, ModelError> {
         match self {
             Self::Named(law) => match law.form.law {
-                Made::OfVelocity(made) => {
-                    let (numbers, mu_s) = law.numbers(setting);
-                    made(&numbers, mu_s)
-                }
+                Made::OfVelocity(made) => law.made(made, setting),
                 Made::WithState(_) => Err(ModelError::of_law(OF_VELOCITY)),
             },
             Self::Table(table) => FrictionLaw::table(table.clone(), setting.get(Parameter::MuS)),
+            Self::Formula(formula) => formula.at(setting),
         }
     }
 }

@@ -8,7 +8,9 @@
 //! - `case_file`: the case file: one motion, read and checked once
 //! - `catalogue`: enumerations with a table of facts, one row for each value
 //! - `command`: the command line for a setting
+//! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
+//! - `formula`: a friction law as an expression in the speed
 //! - `friction_table`: the points of a table from a sweep file or from two columns
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
@@ -47,7 +49,9 @@ mod beyond_curve;
 pub mod case_file;
 mod catalogue;
 pub(crate) mod command;
+mod expression;
 pub mod field;
+pub mod formula;
 pub mod friction_table;
 mod given;
 mod given_system;

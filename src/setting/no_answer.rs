@@ -30,6 +30,7 @@ impl From<NoAnswer> for ModelError {
             parameter,
             value: f64::NAN,
             allowed,
+            at_speed: None,
         };
         match why {
             NoAnswer::Model(error) => error,

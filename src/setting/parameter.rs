@@ -265,7 +265,8 @@ catalogue! {
             group: Group::Sliding,
             flag: Some(Flag {
                 value: "M",
-                help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]",
+                help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]; with \
+                    --friction formula an expression in the speed v",
             }),
             page: Some(Page::new([0.05, 2.0], [0.05, 2.0]).folded(Folded::Model)),
             ..ROW
@@ -478,6 +479,36 @@ catalogue! {
                 help: "v_s of the friction law",
             }),
             page: Some(Page::new([0.02, 4.0], [0.05, 2.0]).first(0.5)),
+            ..ROW
+        };
+        /// δ, the exponent of Stribeck's transition.
+        Exponent = Row {
+            name: "exponent",
+            symbol: "δ_s",
+            long_name: "exponent of the transition of the friction law",
+            default: Some(2.0),
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "D",
+                help: "Exponent of the stribeck law [default: 2]",
+            }),
+            page: Some(Page::new([0.4, 3.0], [0.5, 2.5])),
+            ..ROW
+        };
+        /// σ, the viscous part of a friction law.
+        ViscousCoefficient = Row {
+            name: "viscous_coefficient",
+            symbol: "σ",
+            long_name: "growth of the friction coefficient with the velocity",
+            dimension: SLOPE,
+            range: Range::NotNegative,
+            default: Some(0.0),
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "SIGMA",
+                help: "σ, viscous part of the friction law, time/length [default: 0]",
+            }),
+            page: Some(Page::new([0.0, 1.0], [0.0, 0.5])),
             ..ROW
         };
         /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
@@ -818,6 +849,7 @@ impl Parameter {
                 parameter: self.name(),
                 value,
                 allowed: self.allowed(),
+                at_speed: None,
             })
         }
     }

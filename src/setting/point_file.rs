@@ -77,7 +77,7 @@ impl PointSpec {
         };
         let entries = entries(parsed.get_ref(), "");
         let mut document = Document::of(entries, keys.iter().copied());
-        let given = GivenParameters::of(&mut document, |p| of.takes(p));
+        let given = GivenParameters::of(&mut document, text, |p| of.takes(p));
         let units = document.take("units", read_units).unwrap_or_default();
         let search = VcKeys::of(&mut document, &Protocol::NAMES);
         document.finish()?;

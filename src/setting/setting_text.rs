@@ -6,6 +6,7 @@ use super::parameter::{Group, Parameter};
 use super::units::Units;
 use super::values::Setting;
 use crate::model::table::TableColumn;
+use crate::text::toml_reader::quoted;
 
 /// A number as text that is read as the same number.
 #[must_use]
@@ -45,6 +46,13 @@ pub(crate) fn setting_text(
             wanted(p) && p.group() == Group::Law
         });
         text += &format!("law = \"{}\"\n", law.name());
+        if let LawKind::Formula(formula) = law {
+            let key = TableColumn::MuK.name();
+            text += &format!("{key} = {}\n", quoted(formula.text()));
+            for (own, value) in setting.own().filter(|(_, value)| !value.is_nan()) {
+                text += &format!("{} = {}\n", own.name, number(value));
+            }
+        }
         if let LawKind::Table(points) = law {
             for (column, values) in [
                 (TableColumn::Speeds, points.speeds()),

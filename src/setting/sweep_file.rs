@@ -55,7 +55,7 @@ impl SweepSpec {
              [simulation] has the horizon and the steps",
         );
         let most = most_points.min(MOST_POINTS);
-        let (system, given, axes) = read_parameters(&mut document, system, most);
+        let (system, given, axes) = read_parameters(&mut document, text, system, most);
         let asked = document.take("fields", read_fields).unwrap_or_default();
         let simulation = document.take("simulation", read_simulation);
         let (simulation, horizon) = simulation.unwrap_or_default();
@@ -109,7 +109,7 @@ struct SweepFile<'t> {
     spec: SweepSpec,
     /// The system, where it is not the letter's.
     system: Option<GivenSystem>,
-    given: GivenParameters,
+    given: GivenParameters<'t>,
     /// The fields in the order of the file, and their places.
     asked: Vec<Field>,
     places: Vec<Range<usize>>,
@@ -128,12 +128,13 @@ fn read_simulation(table: &Entry) -> Result<(Simulation, Option<Range<usize>>), 
 }
 
 /// Reads the tables of parameters: of the system, or of the block.
-fn read_parameters(
+fn read_parameters<'t>(
     document: &mut Document,
+    text: &'t str,
     mut system: Option<GivenSystem>,
     most_points: u64,
-) -> (Option<GivenSystem>, GivenParameters, Vec<Axis>) {
-    let (mut given, mut axes) = (GivenParameters::default(), Vec::new());
+) -> (Option<GivenSystem>, GivenParameters<'t>, Vec<Axis>) {
+    let (mut given, mut axes) = (GivenParameters::begin(document, text), Vec::new());
     let tables = ["axes", "fixed", "friction", "start"];
     document.each(&tables, |table| match (table.key, &mut system) {
         ("axes", system) => read_axes(table, most_points, &mut axes, |entry| match system {

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use super::formula::GivenFormula;
 use super::law_kind::{LawKind, OF_VELOCITY};
 use super::no_answer::NoAnswer;
 use super::own_system::OwnSystem;
@@ -155,10 +156,20 @@ impl Setting {
         self.file().map(|system| &*system.model)
     }
 
-    /// The own parameters of the system, with their values.
+    /// The own parameters of the system or of the formula of friction, with their values.
     pub fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
-        let system = self.file().into_iter();
-        system.flat_map(OwnSystem::parameters)
+        let system = self.file().into_iter().flat_map(OwnSystem::parameters);
+        let formula = self.formula().into_iter().flat_map(GivenFormula::own);
+        system.chain(formula)
+    }
+
+    /// The formula of the friction law, if it is one.
+    #[must_use]
+    pub fn formula(&self) -> Option<&GivenFormula> {
+        match self.law() {
+            Some(LawKind::Formula(formula)) => Some(formula),
+            _ => None,
+        }
     }
 
     /// The parameters of the system besides its own; none for the letter's system.
@@ -181,6 +192,7 @@ impl Setting {
         match (quantity, &self.subject) {
             (Quantity::Known(parameter), _) => self.get(*parameter),
             (Quantity::Own(own), Subject::File(system)) => system.get(own),
+            (Quantity::Own(own), Subject::Block(Some(LawKind::Formula(law)))) => law.get(own),
             (Quantity::Own(_), Subject::Block(_)) => f64::NAN,
         }
     }
@@ -191,6 +203,9 @@ impl Setting {
         match (quantity, &mut self.subject) {
             (Quantity::Known(parameter), _) => self.set(*parameter, value),
             (Quantity::Own(own), Subject::File(system)) => system.set(own, value),
+            (Quantity::Own(own), Subject::Block(Some(LawKind::Formula(law)))) => {
+                law.set(own, value);
+            }
             (Quantity::Own(_), Subject::Block(_)) => {}
         }
     }
@@ -267,6 +282,7 @@ impl Setting {
                 parameter: "system",
                 value: f64::NAN,
                 allowed: "the letter's where a block on its spring is meant",
+                at_speed: None,
             });
         }
         if self.rate_and_state().is_some() {
@@ -277,6 +293,7 @@ impl Setting {
                 parameter: parameter.name(),
                 value: self.get(parameter),
                 allowed,
+                at_speed: None,
             }),
             None => Ok(()),
         }

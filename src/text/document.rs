@@ -37,6 +37,11 @@ impl<'t> Document<'t> {
         self.known.contains(&key).then(|| self.left.remove(place))
     }
 
+    /// The entry of a key that is not taken yet.
+    pub(crate) fn ahead(&self, key: &str) -> Option<&Entry<'t>> {
+        self.left.iter().find(|entry| entry.key == key)
+    }
+
     /// The value of a key; none where it is not given or not understood.
     pub(crate) fn take<T>(
         &mut self,

@@ -75,6 +75,19 @@ pub(crate) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, SpecError> {
     })
 }
 
+/// A basic string of TOML.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04X}", u32::from(c)),
+            c => quoted.push(c),
+        }
+    }
+    quoted + "\""
+}
+
 /// The entries of a table in the order of the text.
 pub(crate) fn entries<'t>(table: &'t DeTable<'t>, path: &str) -> Vec<Entry<'t>> {
     let mut entries: Vec<Entry> = table

@@ -5,10 +5,12 @@ use slipmap::critical::switch_on::{Phase, Trials};
 use slipmap::critical::{self, CriticalVelocity, Problem, Regime, critical_velocity};
 use slipmap::model::{ActuatorLimits, Channel, Dashpots, Feedback, FrictionLaw, Table};
 use slipmap::setting::CaseSpec;
+use slipmap::setting::formula::GivenFormula;
+use slipmap::setting::law_kind::LawKind;
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
 
-use super::asked::{case_file, phase_file, simulate_command, vc_command};
+use super::asked::{case_file, formula, phase_file, simulate_command, vc_command};
 use super::block::{Block, Event};
 use super::law::{Friction, Law};
 use super::ramp::{self, Begin, End, Ramp};
@@ -228,6 +230,23 @@ fn friction_law(friction: &Friction) -> FrictionLaw {
         Law::Table(curve) => {
             let table = Table::new(curve.x.clone(), curve.y.clone());
             FrictionLaw::table(table.expect("a table"), mu_s)
+        }
+        Law::Formula { mu0, v_s, .. } => {
+            let (text, own) = formula(friction).expect("a formula");
+            let law = LawKind::Formula(GivenFormula::read(&text).expect("an expression"));
+            let known = [
+                ("mu0", *mu0),
+                ("v_s", *v_s),
+                ("mu_s", mu_s),
+                ("tau", 1.0),
+                ("v0", 1.0),
+            ];
+            let given = own.into_iter().chain(known);
+            let setting = slipmap::setting::Setting::checked(given, Some(law), &[]);
+            setting
+                .expect("a setting")
+                .friction_law()
+                .map(|law| law.expect("a law"))
         }
     };
     law.expect("a law")

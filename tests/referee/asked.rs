@@ -17,9 +17,20 @@ fn coefficients(friction: &Friction) -> (&'static str, Vec<(&'static str, f64)>)
         Law::Weakening { mu0, v_s } => ("weakening", vec![("mu0", mu0), ("v_s", v_s)]),
         Law::Stribeck { mu0, v_s } => ("stribeck", vec![("mu0", mu0), ("v_s", v_s)]),
         Law::Table(_) => ("table", Vec::new()),
+        Law::Formula { mu0, v_s, .. } => ("formula", vec![("mu0", mu0), ("v_s", v_s)]),
     };
     named.push(("mu_s", friction.mu_s));
     (name, named)
+}
+
+/// The expression of a formula, and the values of its own parameters.
+pub(crate) fn formula(friction: &Friction) -> Option<(String, Vec<(&'static str, f64)>)> {
+    let Law::Formula { shape, sigma, .. } = friction.law else {
+        return None;
+    };
+    let text = format!("mu0 + (mu_s - mu0)*{} + sigma*v", shape.text());
+    let delta = shape.exponent().map(|delta| ("delta", delta));
+    Some((text, delta.into_iter().chain([("sigma", sigma)]).collect()))
 }
 
 /// M, κ, N0, the gains, the delay, memory and latency, as far as they are not by default.
@@ -61,6 +72,9 @@ pub(crate) fn law_and_parameters(s: &Setting) -> String {
     let mut text = format!("[friction]\nlaw = \"{name}\"\n{}", lines(&named));
     if let Law::Table(curve) = &s.friction.law {
         text += &format!("speeds = {:?}\nmu_k = {:?}\n", curve.x, curve.y);
+    }
+    if let Some((expression, own)) = formula(&s.friction) {
+        text += &format!("mu_k = \"{expression}\"\n{}", lines(&own));
     }
     text + "[fixed]\n" + &lines(&parameters(s)) + &lines(&[("v0", s.v0)])
 }
@@ -116,6 +130,12 @@ pub(crate) fn vc_command(s: &Setting) -> String {
     command += &format!("slipmap vc --friction {name}");
     if name == "table" {
         command += " --table curve.csv";
+    }
+    if let Some((expression, own)) = formula(&s.friction) {
+        command += &format!(" --mu-k='{expression}'");
+        for (name, value) in own {
+            command += &format!(" --set={name}={}", number(value));
+        }
     }
     for (name, value) in named.into_iter().chain(parameters(s)) {
         command += &format!(" --{}={}", name.replace('_', "-"), number(value));

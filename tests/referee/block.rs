@@ -404,6 +404,13 @@ impl Block {
                 self.pace.slipping(s.time(), self.feedback() + growth, bend)
             }
         };
+        if let Mode::Slip(_) = self.mode
+            && s.friction.is_rough_at_rest()
+        {
+            // From rest the speed grows by its second derivative.
+            let growth = (now.pull_rate / s.mass).abs();
+            h = h.min((0.02 * s.friction.reach(self.piece, now.u) / growth).sqrt());
+        }
         if self.controlled || !s.is_plain() {
             let then = self.t - s.tau;
             h = h.min(self.pace.delayed(s.tau));

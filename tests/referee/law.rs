@@ -12,9 +12,78 @@ pub(crate) enum Law {
     Weakening { mu0: f64, v_s: f64 },
     /// μ0 + (μ_S − μ0) exp(−(v/v_s)²).
     Stribeck { mu0: f64, v_s: f64 },
+    /// μ0 + (μ_S − μ0) f(v/v_s) + σ v.
+    Formula {
+        shape: Shape,
+        mu0: f64,
+        v_s: f64,
+        sigma: f64,
+    },
     /// A monotone cubic through measured points, constant outside of them.
     Table(Curve),
 }
+
+/// A fall f(q) from 1 at rest to 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Shape {
+    /// exp(−q^δ).
+    Exponential(f64),
+    /// 1/cosh q.
+    Hyperbolic,
+    /// 1/(1 + q^δ).
+    Rational(f64),
+    /// 1 − tanh q.
+    Tanh,
+}
+
+impl Shape {
+    /// As slipmap writes it, with `v_s` and `delta`.
+    pub(crate) fn text(self) -> &'static str {
+        match self {
+            Self::Exponential(_) => "exp(-(v/v_s)^delta)",
+            Self::Hyperbolic => "1/cosh(v/v_s)",
+            Self::Rational(_) => "1/(1 + (v/v_s)^delta)",
+            Self::Tanh => "(1 - tanh(v/v_s))",
+        }
+    }
+
+    /// δ, where there is one.
+    pub(crate) fn exponent(self) -> Option<f64> {
+        match self {
+            Self::Exponential(delta) | Self::Rational(delta) => Some(delta),
+            Self::Hyperbolic | Self::Tanh => None,
+        }
+    }
+
+    /// f and its slope. With an exponent that is not whole it has no value below rest; there it is
+    /// that at rest.
+    fn value_and_slope(self, q: f64) -> (f64, f64) {
+        let power = |delta: f64| match delta.fract() == 0.0 {
+            true => (q.powi(delta as i32), delta * q.powi(delta as i32 - 1)),
+            false => {
+                let q = q.max(0.0);
+                (q.powf(delta), delta * q.powf(delta - 1.0).min(1e12))
+            }
+        };
+        match self {
+            Self::Exponential(delta) => {
+                let (y, slope) = power(delta);
+                ((-y).exp(), -slope * (-y).exp())
+            }
+            Self::Hyperbolic => (1.0 / q.cosh(), -q.tanh() / q.cosh()),
+            Self::Rational(delta) => {
+                let (y, slope) = power(delta);
+                (1.0 / (1.0 + y), -slope / (1.0 + y).powi(2))
+            }
+            Self::Tanh => (1.0 - q.tanh(), -1.0 / q.cosh().powi(2)),
+        }
+    }
+}
+
+/// Near rest a law whose exponent is not whole bends over this part of the speed, but over no less
+/// than this part of v_s.
+const NEAR_REST: f64 = 0.5;
+const AT_REST: f64 = 1e-10;
 
 /// A law with its coefficient of static friction.
 #[derive(Debug, Clone)]
@@ -52,6 +121,15 @@ impl Friction {
                 let q = speed / v_s;
                 mu0 + (self.mu_s - mu0) * (-q * q).exp()
             }
+            Law::Formula {
+                shape,
+                mu0,
+                v_s,
+                sigma,
+            } => {
+                let (fall, _) = shape.value_and_slope(speed / v_s);
+                mu0 + (self.mu_s - mu0) * fall + sigma * speed
+            }
             Law::Table(curve) => curve.value(piece, speed),
         }
     }
@@ -68,7 +146,24 @@ impl Friction {
                 let q = speed / v_s;
                 -2.0 * (self.mu_s - mu0) * q / v_s * (-q * q).exp()
             }
+            Law::Formula {
+                shape,
+                mu0,
+                v_s,
+                sigma,
+            } => {
+                let (_, slope) = shape.value_and_slope(speed / v_s);
+                (self.mu_s - mu0) * slope / v_s + sigma
+            }
             Law::Table(curve) => curve.slope(piece, speed),
+        }
+    }
+
+    /// Whether the law has no series at rest.
+    pub(crate) fn is_rough_at_rest(&self) -> bool {
+        match &self.law {
+            Law::Formula { shape, .. } => shape.exponent().is_some_and(|d| d.fract() != 0.0),
+            _ => false,
         }
     }
 
@@ -78,6 +173,15 @@ impl Friction {
         match &self.law {
             Law::Coulomb { .. } => f64::INFINITY,
             Law::Weakening { v_s, .. } => v_s + speed.abs(),
+            Law::Formula { shape, v_s, .. } => {
+                let far = v_s + 0.2 * (speed.abs() - v_s).max(0.0);
+                match shape.exponent() {
+                    Some(delta) if delta.fract() != 0.0 => {
+                        far.min(NEAR_REST * speed.abs() + AT_REST * v_s)
+                    }
+                    _ => far,
+                }
+            }
             Law::Stribeck { v_s, .. } => v_s + 5.0 * (speed.abs() - FLANK * v_s).max(0.0),
             Law::Table(curve) => {
                 let (from, to) = curve.bounds(piece);

@@ -113,6 +113,18 @@ fn motions_with_limits() {
     assert!(tally.compared > 5 * tally.asked, "{tally:?}");
 }
 
+/// The same with friction laws that are formulas.
+#[test]
+fn motions_by_formulas() {
+    let total = given("SLIPMAP_CASES").map_or(60, |n| n as usize);
+    let tally = ask("motions by formulas", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0xf0f0, number);
+        against::motion(&random::by_formula(&mut chance))
+    });
+    holds(&tally, 0.03, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
@@ -352,6 +364,17 @@ fn critical_velocities_with_limits() {
     holds(&tally, 0.1, 0.2);
 }
 
+/// The same with friction laws that are formulas.
+#[test]
+fn critical_velocities_by_formulas() {
+    let total = tenth_of_cases(12);
+    let tally = ask("critical velocities by formulas", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0xf0fc, number);
+        against::velocity(&random::problem_by_formula(&mut chance))
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
 /// What becomes of stick-slip when control is switched on at a phase.
 #[test]
 fn switching_on_by_chance() {
@@ -409,7 +432,7 @@ fn wrong_events(motions: &[(Start, Vec<Happened>)]) -> [usize; 2] {
 #[test]
 fn motions_of_a_rig() {
     let motions = tables::rig_motions();
-    assert_eq!(motions.len(), 27);
+    assert_eq!(motions.len(), 60);
     for (start, events, (a, x_dot)) in &motions {
         if events.iter().any(|(event, _)| *event == Event::LiftOff) {
             continue;
@@ -430,8 +453,8 @@ fn motions_of_a_rig() {
 #[test]
 fn critical_velocities_of_a_rig() {
     let velocities = tables::rig_velocities();
-    assert_eq!(velocities.len(), 23);
-    let tally = ask("critical velocities of a rig", 23, |row| {
+    assert_eq!(velocities.len(), 30);
+    let tally = ask("critical velocities of a rig", 30, |row| {
         let (setting, expected) = &velocities[row];
         against::known_velocity(setting, *expected)
     });

@@ -1,6 +1,6 @@
 //! Settings by chance: SplitMix64, and what the referee is asked about.
 
-use super::law::{Friction, Law};
+use super::law::{Friction, Law, Shape};
 use super::pchip::Curve;
 use super::setting::{FREE, Setting};
 
@@ -56,6 +56,41 @@ fn friction(chance: &mut Chance) -> Friction {
         _ => Law::Table(curve(chance, mu_s, v_s)),
     };
     Friction { law, mu_s }
+}
+
+/// A formula, perhaps with a viscous part.
+fn formula(chance: &mut Chance) -> Friction {
+    let mu_s = [1.0, chance.between(0.5, 1.2)][chance.below(2)];
+    let delta = [1.0, 2.0, 3.0, 1.5, chance.between(1.05, 2.5), 0.5][chance.below(6)];
+    let shape = [
+        Shape::Exponential(delta),
+        Shape::Hyperbolic,
+        Shape::Rational(delta),
+        Shape::Tanh,
+    ][chance.below(4)];
+    let law = Law::Formula {
+        shape,
+        mu0: mu_s * chance.between(0.25, 0.9),
+        v_s: chance.log(0.02, 1.0),
+        sigma: [0.0, chance.log(0.005, 0.2)][chance.below(2)],
+    };
+    Friction { law, mu_s }
+}
+
+/// A motion whose friction law is a formula, here and there with dashpots or limits.
+pub(crate) fn by_formula(chance: &mut Chance) -> Start {
+    let mut start = [start, start, start, damped, limited][chance.below(5)](chance);
+    let s = &start.setting;
+    let velocity = s.load / s.stiffness / s.time();
+    start.setting.friction = friction_in(formula(chance), velocity);
+    start
+}
+
+/// A block whose critical velocity is asked for, with a formula.
+pub(crate) fn problem_by_formula(chance: &mut Chance) -> Setting {
+    let mut setting = [problem, damped_problem, limited_problem][chance.below(3)](chance);
+    setting.friction = formula(chance);
+    setting
 }
 
 /// A curve that falls from rest, over three to six points, and may rise again.
@@ -198,6 +233,10 @@ fn friction_in(mut friction: Friction, velocity: f64) -> Friction {
     match &mut friction.law {
         Law::Coulomb { .. } => {}
         Law::Weakening { v_s, .. } | Law::Stribeck { v_s, .. } => *v_s *= velocity,
+        Law::Formula { v_s, sigma, .. } => {
+            *v_s *= velocity;
+            *sigma /= velocity;
+        }
         Law::Table(curve) => {
             let x: Vec<f64> = curve.x.iter().map(|x| x * velocity).collect();
             *curve = Curve::through(&x, &curve.y);

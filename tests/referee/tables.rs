@@ -1,7 +1,7 @@
 //! Reference tables that another program worked out, by two step sizes each.
 
 use super::block::Event;
-use super::law::{Friction, Law};
+use super::law::{Friction, Law, Shape};
 use super::ramp::End;
 use super::random::Start;
 use super::setting::{FREE, Setting};
@@ -60,6 +60,15 @@ impl Row<'_> {
                 mu0,
                 v_s: self.number("v_s"),
             },
+            Some("formula") => Law::Formula {
+                shape: match self.or_zero("delta") {
+                    0.0 => Shape::Hyperbolic,
+                    delta => Shape::Exponential(delta),
+                },
+                mu0,
+                v_s: self.number("v_s"),
+                sigma: self.or_zero("sigma"),
+            },
             other => panic!("{other:?}"),
         };
         let mu_s = self.word("mu_s").map_or(1.0, |_| self.number("mu_s"));
@@ -83,12 +92,6 @@ impl Row<'_> {
     }
 }
 
-/// The rows of a table whose law is one of the referee's.
-fn with_known_law(table: &str) -> impl Iterator<Item = Row<'_>> {
-    let known = |row: &Row| row.word("law") != Some("formula");
-    rows(table).into_iter().filter(known)
-}
-
 /// A motion of `rig_motions.csv`: its start, its events, and a and ẋ at its end.
 pub(crate) type RigMotion = (Start, Vec<(Event, f64)>, (f64, f64));
 
@@ -105,7 +108,8 @@ pub(crate) fn rig_motions() -> Vec<RigMotion> {
         let last = (row.number("a_end"), row.number("x_dot_end"));
         (start, events.map(event).collect(), last)
     };
-    with_known_law(include_str!("../reference/rig_motions.csv"))
+    rows(include_str!("../reference/rig_motions.csv"))
+        .into_iter()
         .map(motion)
         .collect()
 }
@@ -121,7 +125,8 @@ pub(crate) fn rig_velocities() -> Vec<(Setting, End)> {
         };
         (row.setting(), end)
     };
-    with_known_law(include_str!("../reference/rig_vc.csv"))
+    rows(include_str!("../reference/rig_vc.csv"))
+        .into_iter()
         .map(velocity)
         .collect()
 }

@@ -10,7 +10,7 @@ use crate::sweep::described::trace::{QUANTITIES, TIME};
 use super::markdown::{code, heading, paragraph, table};
 
 /// Root attributes of maps, with their meanings.
-const ROOT: [(&str, &str); 20] = [
+const ROOT: [(&str, &str); 21] = [
     ("Conventions", "the conventions that the file follows"),
     (root::TITLE, "the title of the sweep"),
     (root::SOURCE, "the program"),
@@ -50,6 +50,7 @@ const ROOT: [(&str, &str); 20] = [
         "the speeds of a law of measured points",
     ),
     (root::FRICTION_MU_K, "its friction coefficients"),
+    (root::FRICTION_FORMULA, "the formula of the formula law"),
     (
         schema::CONTENTS_SHA256,
         "SHA-256 of everything but cells, references and history",

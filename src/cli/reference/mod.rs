@@ -142,8 +142,14 @@ fn laws(page: &mut String) {
         "points".into(),
         "2 to 4096 points".into(),
     ];
+    let formula_row = [
+        code(LawKind::FORMULA),
+        "the expression `mu_k` in the speed `v`".into(),
+        "the names in it".into(),
+        "all".into(),
+    ];
     let titles = ["name", "μ_K(v)", "parameters", "how many are needed"];
-    table(page, titles, rows.chain([table_row]).collect());
+    table(page, titles, rows.chain([table_row, formula_row]).collect());
 }
 
 fn fields(page: &mut String) {

@@ -16,6 +16,7 @@ fn too_large(degree: usize) -> ModelError {
         parameter: "degree",
         value: degree as f64,
         allowed: "at most 16",
+        at_speed: None,
     }
 }
 

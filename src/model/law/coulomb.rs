@@ -30,8 +30,8 @@ impl Law for Coulomb {
         formula: "μ_K = μ0",
         parameters: &["mu0"],
         needed: 1,
-        optional: "mu_s",
-        law: Made::OfVelocity(|of, mu_s| FrictionLaw::coulomb(of[0], mu_s)),
+        optional: &["mu_s"],
+        law: Made::OfVelocity(|of| FrictionLaw::coulomb(of[0], of[1])),
     });
 
     fn mu_k(&self, _: f64) -> f64 {

@@ -10,24 +10,24 @@ pub struct Form {
     pub name: &'static str,
     /// Its formula, for the help.
     pub formula: &'static str,
-    /// The names of the parameters that describe it, besides the optional one.
+    /// The names of the parameters that describe it, besides the optional ones.
     pub parameters: &'static [&'static str],
     /// How many of them must be given. If not all, the missing one follows from the others.
     pub needed: usize,
-    /// The name of the one parameter that need not be given.
-    pub optional: &'static str,
+    /// The names of the parameters that need not be given.
+    pub optional: &'static [&'static str],
     /// The law of some numbers.
     pub(crate) law: Made,
 }
 
-/// The law of the numbers of [`Form::parameters`], in their order and NaN where one is not given,
-/// and of the optional one.
+/// The law of the numbers of [`Form::parameters`] and then those of [`Form::optional`], in their
+/// order and NaN where one is not given.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Made {
     /// Friction is a function of the velocity.
-    OfVelocity(fn(&[f64], f64) -> Result<FrictionLaw, ModelError>),
+    OfVelocity(fn(&[f64]) -> Result<FrictionLaw, ModelError>),
     /// Friction depends on a state besides.
-    WithState(fn(&[f64], f64) -> RateAndState),
+    WithState(fn(&[f64]) -> RateAndState),
 }
 
 impl Form {

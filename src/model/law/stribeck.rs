@@ -1,6 +1,8 @@
 //! Stribeck's law with a Gaussian transition, μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²).
 
 use super::discs::resolved;
+use super::formula::Operand;
+use super::hyperbolic::transition;
 use super::{Form, FrictionLaw, Kind, Law, Made, Range, Series, checked_coefficients, hull};
 use crate::model::ModelError;
 use crate::model::elementary::{exp, ln, power};
@@ -36,6 +38,28 @@ impl FrictionLaw {
     }
 }
 
+impl FrictionLaw {
+    /// Stribeck's law with any exponent δ and a viscous part,
+    /// μ_K(v) = μ0 + (μ_S − μ0) exp(−(v/v_s)^δ) + σ v.
+    ///
+    /// # Errors
+    /// As [`FrictionLaw::stribeck`]. `exponent` δ must be finite and positive, and
+    /// `viscous_coefficient` σ, time/length, finite and at least 0.
+    pub fn stribeck_with(
+        mu0: f64,
+        v_s: f64,
+        mu_s: f64,
+        (exponent, viscous_coefficient): (f64, f64),
+    ) -> Result<Self, ModelError> {
+        let exponent = ModelError::positive("exponent", exponent)?;
+        transition(mu0, v_s, mu_s, viscous_coefficient, |make, s| {
+            let power = make.power(s, Operand::Number(exponent));
+            let negative = make.negative(power);
+            make.exp(negative)
+        })
+    }
+}
+
 fn gaussian(s: f64) -> f64 {
     exp(-s * s)
 }
@@ -45,11 +69,14 @@ impl Law for Stribeck {
 
     const FORM: Option<&'static Form> = Some(&Form {
         name: "stribeck",
-        formula: "μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)",
+        formula: "μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)^δ) + σ v, with δ = 2 and σ = 0 unless given",
         parameters: &["mu0", "v_s"],
         needed: 2,
-        optional: "mu_s",
-        law: Made::OfVelocity(|of, mu_s| FrictionLaw::stribeck(of[0], of[1], mu_s)),
+        optional: &["mu_s", "exponent", "viscous_coefficient"],
+        law: Made::OfVelocity(|of| match of[3..] {
+            [2.0, 0.0] => FrictionLaw::stribeck(of[0], of[1], of[2]),
+            _ => FrictionLaw::stribeck_with(of[0], of[1], of[2], (of[3], of[4])),
+        }),
     });
 
     fn mu_k(&self, speed: f64) -> f64 {

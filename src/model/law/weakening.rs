@@ -47,10 +47,10 @@ impl Law for Weakening {
         formula: "μ_K = μ0/(1 + v/v_s)",
         parameters: &["mu0", "v_s", "mu_prime_rest"],
         needed: 2,
-        optional: "mu_s",
-        law: Made::OfVelocity(|of, mu_s| {
+        optional: &["mu_s"],
+        law: Made::OfVelocity(|of| {
             let (mu0, v_s) = mu0_and_v_s(of);
-            FrictionLaw::weakening(mu0, v_s, mu_s)
+            FrictionLaw::weakening(mu0, v_s, of[3])
         }),
     });
 

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::expression::{self, FUNCTIONS, VARIABLE};
 use super::parameter::{OwnParameter, WIDEST};
 use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
+use crate::setting::expression::{self, VARIABLE, Written, functions};
 use crate::setting::map_names;
 use crate::setting::parameter::Parameter;
 use crate::text::document::Document;
@@ -21,57 +21,11 @@ const LONGEST_NAME: usize = 40;
 const KEYS: [&str; 7] = ["title", "P", "Q", "B", "A", "parameters", "speed_axis"];
 const POLYNOMIALS: [&str; 4] = ["P", "Q", "B", "A"];
 
-/// An expression as written in a text.
-struct Written {
-    name: &'static str,
-    text: String,
-    /// Where the string stands, with its quotes.
-    span: Range<usize>,
-    /// Where its first character stands; none where the written text differs from its value, as
-    /// with escapes.
-    from: Option<usize>,
-}
-
-impl Written {
-    fn of(name: &'static str, entry: &Entry, whole: &str) -> Result<Self, SpecError> {
-        let text = entry.string()?.to_owned();
-        let literal = whole.get(entry.span.clone()).unwrap_or_default();
-        let unquoted = literal.trim_matches(['"', '\'']);
-        let inside = literal.find(unquoted).filter(|_| !unquoted.is_empty());
-        // TOML ignores a line break right after three quotes.
-        let skipped = unquoted.len().saturating_sub(text.len());
-        let same = unquoted.ends_with(&text) && unquoted[..skipped].trim().is_empty();
-        Ok(Self {
-            name,
-            from: inside
-                .filter(|_| same)
-                .map(|at| entry.span.start + at + skipped),
-            span: entry.span.clone(),
-            text,
-        })
-    }
-
-    fn read(&self, names: &[&str]) -> Result<Expression, SpecError> {
-        let tape = expression::read(&self.text, names).map_err(|misread| {
-            let span = match self.from {
-                // Something missing at the end is reported at the closing quote.
-                Some(from) if misread.place.is_empty() => {
-                    from + misread.place.start..from + misread.place.end + 1
-                }
-                Some(from) => from + misread.place.start..from + misread.place.end,
-                None => self.span.clone(),
-            };
-            SpecError {
-                span: Some(span),
-                help: misread.help,
-                ..SpecError::whole(format!("{}: {}", self.name, misread.message))
-            }
-        })?;
-        Ok(Expression {
-            text: self.text.clone(),
-            tape,
-        })
-    }
+fn polynomial(written: &Written, names: &[&str]) -> Result<Expression, SpecError> {
+    Ok(Expression {
+        text: written.text.clone(),
+        tape: written.read(|text| expression::read(text, names))?,
+    })
 }
 
 impl std::str::FromStr for SystemModel {
@@ -115,11 +69,13 @@ impl SystemModel {
                 .help("either P and Q, or the open loop B and the feedback A: expressions in s")
         };
         let form = match &polynomials {
-            [Some(p), Some(q), None, None] => Form::Direct([p.read(&names)?, q.read(&names)?]),
+            [Some(p), Some(q), None, None] => {
+                Form::Direct([polynomial(p, &names)?, polynomial(q, &names)?])
+            }
             [None, None, Some(open), Some(gain)] => {
                 check_feedback_names(&parameters)?;
-                let (open, place) = (open.read(&names)?, &gain.span);
-                let gain = gain.read(&names)?;
+                let (open, place) = (polynomial(open, &names)?, &gain.span);
+                let gain = polynomial(gain, &names)?;
                 check_degrees(&open, &gain, place)?;
                 Form::Feedback([open, gain])
             }
@@ -214,7 +170,7 @@ fn check_name(entry: &Entry) -> Result<(), SpecError> {
     let why = match name {
         VARIABLE => "it is the variable of the polynomials",
         _ if name == Parameter::Tau.name() => "it is the delay, which every system has",
-        _ if FUNCTIONS.contains(&name) => "it is a function",
+        _ if functions().any(|known| known == name) => "it is a function",
         _ if map_names::taken().any(|taken| taken == name) => "maps have a variable of that name",
         _ => return Ok(()),
     };

@@ -21,28 +21,22 @@
 //! unit = "rpm"
 //! ```
 //!
-//! - `expression`, `part`: read expressions; `tape`: evaluates them; `bounded`: numbers with bounds
-//!   on their error
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
 //! - `parameter`: a parameter of a system
 
-mod bounded;
-mod expression;
 mod file;
 pub mod parameter;
-mod part;
 pub mod shipped;
-mod tape;
 mod text;
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use parameter::OwnParameter;
-use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
 use crate::model::Channel;
+use crate::setting::expression::{Stacks, Tape};
 use crate::setting::no_answer::NoAnswer;
 
 /// A system whose parameters have no values yet.

@@ -2,19 +2,7 @@
 
 use super::parameter::OwnParameter;
 use super::{SpeedAxis, SystemModel};
-
-/// A basic string of TOML.
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted += &format!("\\u{:04X}", u32::from(c)),
-            c => quoted.push(c),
-        }
-    }
-    quoted + "\""
-}
+use crate::text::toml_reader::quoted;
 
 impl OwnParameter {
     /// Everything but the name, as an inline table.

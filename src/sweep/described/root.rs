@@ -83,6 +83,9 @@ fn friction(setting: &Setting) -> Vec<Attribute> {
         attributes.push(attribute(root::FRICTION_SPEEDS, table.speeds()));
         attributes.push(attribute(root::FRICTION_MU_K, table.mu_k()));
     }
+    if let Some(formula) = setting.formula() {
+        attributes.push(attribute(root::FRICTION_FORMULA, formula.text()));
+    }
     attributes
 }
 

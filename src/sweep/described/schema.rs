@@ -85,6 +85,7 @@ pub(crate) mod root {
     pub(crate) const FRICTION_SPEEDS: &str = "friction_speeds";
     /// μ_K at these speeds.
     pub(crate) const FRICTION_MU_K: &str = "friction_mu_k";
+    pub(crate) const FRICTION_FORMULA: &str = "friction_formula";
 }
 
 /// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other,

@@ -279,6 +279,10 @@ impl Plan {
             facts.push((TableColumn::Speeds.name(), table.speeds().into()));
             facts.push((TableColumn::MuK.name(), table.mu_k().into()));
         }
+        if let Some(formula) = fixed.formula() {
+            let text = formula.text().bytes().map(f64::from).collect();
+            facts.push((TableColumn::MuK.name(), text));
+        }
         if let Some(system) = fixed.system() {
             let text = system.to_toml().into_bytes();
             facts.push(("system", text.into_iter().map(f64::from).collect()));

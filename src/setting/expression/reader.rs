@@ -1,15 +1,15 @@
-//! Reads an expression: a polynomial in s with named parameters.
+//! Reads an expression of named numbers: a number, or a polynomial in s.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
 //! product = signed { ("*" | "/") signed }
 //! signed  = ("+" | "-") signed | power
-//! power   = operand [ "^" whole number ]
+//! power   = operand [ "^" exponent ]
 //! operand = number | name | "(" sum ")" | function "(" sum { "," sum } ")"
 //! ```
 //!
-//! Divisors and arguments of functions do not contain s. Operations are recorded in the order in
-//! which they are read, for a [`Tape`].
+//! Divisors, exponents and arguments of functions do not contain s; what contains it has whole
+//! powers from 0 on. Operations are recorded in the order in which they are read, for a [`Tape`].
 
 use std::ops::Range;
 
@@ -29,15 +29,47 @@ const LONGEST: usize = 4096;
 /// The deepest nesting of parentheses and signs.
 const DEEPEST: usize = 64;
 
-/// The name of the variable.
-pub(super) const VARIABLE: &str = "s";
+/// The name of the variable of polynomials.
+pub(in crate::setting) const VARIABLE: &str = "s";
+/// The functions of several numbers.
+const OF_SEVERAL: [(&str, Op); 2] = [("min", Op::Smaller), ("max", Op::Larger)];
+
 /// The names of functions.
-pub(super) const FUNCTIONS: [&str; 7] = ["sqrt", "exp", "log", "sin", "cos", "min", "max"];
+pub(in crate::setting) fn functions() -> impl Iterator<Item = &'static str> {
+    let of_one = Function::NAMED.iter().map(|(name, _)| *name);
+    of_one.chain(OF_SEVERAL.map(|(name, _)| name))
+}
+
+/// The operation of a function, and whether it takes several numbers.
+fn function_of(name: &str) -> Option<(Op, bool)> {
+    let of_one = Function::NAMED.iter().find(|(known, _)| *known == name);
+    let of_several = OF_SEVERAL.iter().find(|(known, _)| *known == name);
+    let one = of_one.map(|(_, function)| (Op::Apply(*function), false));
+    one.or(of_several.map(|(_, op)| (*op, true)))
+}
+
+/// The names in a text that are not those of functions, each once.
+pub(in crate::setting) fn names_in(text: &str) -> Vec<&str> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut names = Vec::new();
+    for word in text.split(|c| !is_part(c)) {
+        let after = word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
+        let called = text[after..].trim_start().starts_with('(');
+        let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let of_function = functions().any(|known| known == word);
+        if begins && !called && !of_function && !names.contains(&word) {
+            names.push(word);
+        }
+    }
+    names
+}
 
 /// The known names, and how deep the reader is in parentheses.
 #[derive(Debug, Clone)]
 struct State<'n> {
     names: &'n [&'n str],
+    /// The name of the variable of polynomials; none where a number is read.
+    variable: Option<&'static str>,
     depth: usize,
     /// Places of the signs whose operands are being read.
     signs: Vec<usize>,
@@ -167,28 +199,27 @@ fn named(input: &mut Input) -> Read<Part> {
     let before = input.checkpoint();
     multispace0.parse_next(input)?;
     let called = ahead(input).0 == Some('(');
-    if FUNCTIONS.contains(&name) {
-        return function(input, name, called, place);
+    if let Some(of) = function_of(name) {
+        return function(input, name, of, called, place);
     }
     input.reset(&before);
-    let index = input.state.names.iter().position(|known| *known == name);
-    match index {
+    let State {
+        names, variable, ..
+    } = &input.state;
+    let is_variable = *variable == Some(name);
+    match names.iter().position(|known| *known == name) {
         Some(_) if called => Err(times_is_written(place)),
-        None if name == VARIABLE && called => Err(times_is_written(place)),
+        None if is_variable && called => Err(times_is_written(place)),
         Some(index) => Ok(Part::of(Op::Value(index as u8), None, place)),
-        None if name == VARIABLE => Ok(Part::of(Op::Variable, Some(1), place)),
+        None if is_variable => Ok(Part::of(Op::Variable, Some(1), place)),
         None if called => {
-            let meant = did_you_mean(name, FUNCTIONS);
-            let known = FUNCTIONS.join(", ");
+            let meant = did_you_mean(name, functions());
+            let known = functions().collect::<Vec<_>>().join(", ");
             Err(Misread::at(place, format!("unknown function `{name}`"))
                 .help(format!("{meant}known: {known}")))
         }
         None => {
-            let known = || {
-                [VARIABLE]
-                    .into_iter()
-                    .chain(input.state.names.iter().copied())
-            };
+            let known = || variable.iter().copied().chain(names.iter().copied());
             let meant = did_you_mean(name, known());
             let known = known().collect::<Vec<_>>().join(", ");
             Err(
@@ -205,7 +236,13 @@ fn times_is_written(place: Range<usize>) -> Misread {
 }
 
 /// A function whose name was read, and its arguments.
-fn function(input: &mut Input, name: &str, called: bool, place: Range<usize>) -> Read<Part> {
+fn function(
+    input: &mut Input,
+    name: &str,
+    (op, several): (Op, bool),
+    called: bool,
+    place: Range<usize>,
+) -> Read<Part> {
     if !called {
         let message = format!("{name} is a function: it needs an argument in parentheses");
         return Err(Misread::at(place, message));
@@ -231,16 +268,6 @@ fn function(input: &mut Input, name: &str, called: bool, place: Range<usize>) ->
     let end = closed(input, &opened)?;
     input.state.depth -= 1;
     let place = place.start..end;
-    let several = matches!(name, "min" | "max");
-    let op = match name {
-        "sqrt" => Op::Apply(Function::Sqrt),
-        "exp" => Op::Apply(Function::Exp),
-        "log" => Op::Apply(Function::Log),
-        "sin" => Op::Apply(Function::Sin),
-        "cos" => Op::Apply(Function::Cos),
-        "min" => Op::Smaller,
-        _ => Op::Larger,
-    };
     let count = arguments.len();
     let mut arguments = arguments.into_iter();
     let first = arguments.next();
@@ -325,8 +352,19 @@ fn whole(input: &mut Input) -> Read<Part> {
         .parse_next(input)
 }
 
-/// Reads `text` as a polynomial. Each of `names` stands for the value with its index.
-pub(super) fn read(text: &str, names: &[&str]) -> Read<Tape> {
+/// Reads `text` as a polynomial in s. Each of `names` stands for the value with its index.
+pub(in crate::setting) fn read(text: &str, names: &[&str]) -> Read<Tape> {
+    let (part, degree) = read_whole(text, names, Some(VARIABLE))?.lifted();
+    Ok(Tape::new(part.ops, degree))
+}
+
+/// Reads `text` as a number. Each of `names` stands for the value with its index.
+pub(in crate::setting) fn read_number(text: &str, names: &[&str]) -> Read<Tape> {
+    let part = read_whole(text, names, None)?;
+    Ok(Tape::new(part.ops, 0))
+}
+
+fn read_whole(text: &str, names: &[&str], variable: Option<&'static str>) -> Read<Part> {
     if text.len() > LONGEST {
         let message = format!("an expression of {} bytes: at most {LONGEST}", text.len());
         return Err(Misread::at(0..text.len(), message));
@@ -335,6 +373,7 @@ pub(super) fn read(text: &str, names: &[&str]) -> Read<Tape> {
         input: LocatingSlice::new(text),
         state: State {
             names,
+            variable,
             depth: 0,
             signs: Vec::new(),
         },
@@ -342,10 +381,7 @@ pub(super) fn read(text: &str, names: &[&str]) -> Read<Tape> {
     let part = whole(&mut input)?;
     multispace0.parse_next(&mut input)?;
     match ahead(&input) {
-        (None, _) => {
-            let (part, degree) = part.lifted();
-            Ok(Tape::new(part.ops, degree))
-        }
+        (None, _) => Ok(part),
         (Some(')'), place) => Err(Misread::at(place, "this `)` closes nothing")),
         (next, place) => Err(Misread::at(
             place,
@@ -353,6 +389,3 @@ pub(super) fn read(text: &str, names: &[&str]) -> Read<Tape> {
         )),
     }
 }
-
-#[cfg(test)]
-mod tests;

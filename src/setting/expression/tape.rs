@@ -3,22 +3,56 @@
 
 use std::ops::Range;
 
-use super::bounded::Bounded;
 use crate::linear::general::Polynomial;
+use crate::model::ball::Ball;
 
 /// A function of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Function {
+pub(in crate::setting) enum Function {
     Sqrt,
     Exp,
-    Log,
+    Ln,
     Sin,
     Cos,
+    Sinh,
+    Cosh,
+    Tanh,
+    Atan,
+}
+
+impl Function {
+    /// All of them, by name; `log` is a second name of `ln`.
+    pub(in crate::setting) const NAMED: [(&str, Self); 10] = [
+        ("sqrt", Self::Sqrt),
+        ("exp", Self::Exp),
+        ("ln", Self::Ln),
+        ("log", Self::Ln),
+        ("sin", Self::Sin),
+        ("cos", Self::Cos),
+        ("sinh", Self::Sinh),
+        ("cosh", Self::Cosh),
+        ("tanh", Self::Tanh),
+        ("atan", Self::Atan),
+    ];
+
+    fn of(self, x: Ball) -> Ball {
+        match self {
+            Self::Sqrt => x.sqrt(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Atan => x.atan(),
+        }
+    }
 }
 
 /// One operation. Operands are popped from the stacks and the result is pushed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Op {
+pub(in crate::setting) enum Op {
     /// A literal number.
     Number(f64),
     /// The value of a name, by index.
@@ -29,6 +63,8 @@ pub(super) enum Op {
     Divide,
     Negate,
     Power(i32),
+    /// A power whose exponent is no whole number that is written out.
+    Raise,
     Apply(Function),
     Smaller,
     Larger,
@@ -49,7 +85,7 @@ pub(super) enum Op {
 
 /// An expression that is a polynomial in s, with the place of every operation.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tape {
+pub(in crate::setting) struct Tape {
     ops: Vec<Op>,
     places: Vec<Range<usize>>,
     /// An upper bound on the degree of the polynomial.
@@ -58,26 +94,26 @@ pub(super) struct Tape {
 
 /// The stacks of an evaluation, for reuse.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Stacks {
-    numbers: Vec<Bounded>,
+pub(in crate::setting) struct Stacks {
+    numbers: Vec<Ball>,
     polynomials: Vec<Polynomial>,
 }
 
 impl Stacks {
-    fn number(&mut self) -> Bounded {
-        self.numbers.pop().unwrap_or(Bounded::exact(0.0))
+    fn number(&mut self) -> Ball {
+        self.numbers.pop().unwrap_or(Ball::exact(0.0))
     }
 
     fn polynomial(&mut self) -> Polynomial {
         self.polynomials.pop().unwrap_or(Polynomial::ZERO)
     }
 
-    fn two(&mut self, of: impl Fn(Bounded, Bounded) -> Bounded) {
+    fn two(&mut self, of: impl Fn(Ball, Ball) -> Ball) {
         let (second, first) = (self.number(), self.number());
         self.numbers.push(of(first, second));
     }
 
-    fn one(&mut self, of: impl Fn(Bounded) -> Bounded) {
+    fn one(&mut self, of: impl Fn(Ball) -> Ball) {
         let first = self.number();
         self.numbers.push(of(first));
     }
@@ -93,7 +129,7 @@ impl Stacks {
         result.is_some()
     }
 
-    fn scale(&mut self, by: Bounded) -> bool {
+    fn scale(&mut self, by: Ball) -> bool {
         let polynomial = self.polynomial();
         let scaled = polynomial.times(&Polynomial::constant(by.value, by.error));
         let is_known = scaled.is_ok();
@@ -104,22 +140,21 @@ impl Stacks {
     /// Applies an operation; false where its result is not defined.
     fn apply(&mut self, op: Op, values: &[f64]) -> bool {
         match op {
-            Op::Number(value) => self.numbers.push(Bounded::exact(value)),
-            Op::Value(index) => self
-                .numbers
-                .push(Bounded::exact(values[usize::from(index)])),
-            Op::Add => self.two(Bounded::plus),
-            Op::Subtract => self.two(Bounded::minus),
-            Op::Multiply => self.two(Bounded::times),
-            Op::Divide => self.two(Bounded::over),
-            Op::Smaller => self.two(Bounded::smaller),
-            Op::Larger => self.two(Bounded::larger),
-            Op::Negate => self.one(Bounded::negated),
+            Op::Number(value) => self.numbers.push(Ball::exact(value)),
+            Op::Value(index) => self.numbers.push(Ball::exact(values[usize::from(index)])),
+            Op::Add => self.two(Ball::plus),
+            Op::Subtract => self.two(Ball::minus),
+            Op::Multiply => self.two(Ball::times),
+            Op::Divide => self.two(Ball::over),
+            Op::Smaller => self.two(Ball::smaller),
+            Op::Larger => self.two(Ball::larger),
+            Op::Negate => self.one(Ball::negated),
             Op::Power(exponent) => self.one(|x| x.power(exponent)),
-            Op::Apply(function) => self.one(|x| x.function(function)),
+            Op::Raise => self.two(Ball::raised),
+            Op::Apply(function) => self.one(|x| function.of(x)),
             Op::Variable => self.polynomials.push(Polynomial::variable()),
             Op::Lift => {
-                let Bounded { value, error } = self.number();
+                let Ball { value, error } = self.number();
                 self.polynomials.push(Polynomial::constant(value, error));
             }
             Op::AddPolynomials => return self.two_polynomials(|a, b| Some(a.plus(b, 1.0))),
@@ -130,7 +165,7 @@ impl Stacks {
                 return self.scale(by);
             }
             Op::ScaleDown => {
-                let by = Bounded::exact(1.0).over(self.number());
+                let by = Ball::exact(1.0).over(self.number());
                 return by.is_known() && self.scale(by);
             }
             Op::NegatePolynomial => {
@@ -151,7 +186,7 @@ impl Stacks {
 
 impl Tape {
     /// Operations that leave one polynomial, each with its place.
-    pub(super) fn new(ops: Vec<(Op, Range<usize>)>, degree: usize) -> Self {
+    pub(in crate::setting) fn new(ops: Vec<(Op, Range<usize>)>, degree: usize) -> Self {
         let (ops, places) = ops.into_iter().unzip();
         Self {
             ops,
@@ -160,13 +195,18 @@ impl Tape {
         }
     }
 
+    /// The operations, in their order.
+    pub(in crate::setting) fn ops(&self) -> &[Op] {
+        &self.ops
+    }
+
     /// An upper bound on the degree.
-    pub(super) fn degree(&self) -> usize {
+    pub(in crate::setting) fn degree(&self) -> usize {
         self.degree
     }
 
     /// Whether the expression contains the value with this index.
-    pub(super) fn uses(&self, index: usize) -> bool {
+    pub(in crate::setting) fn uses(&self, index: usize) -> bool {
         self.ops
             .iter()
             .any(|op| matches!(op, Op::Value(i) if usize::from(*i) == index))
@@ -176,7 +216,7 @@ impl Tape {
     ///
     /// # Errors
     /// The place of an undefined operation, such as 1/0.
-    pub(super) fn at(
+    pub(in crate::setting) fn at(
         &self,
         values: &[f64],
         stacks: &mut Stacks,

@@ -10,7 +10,7 @@ const LARGEST_EXPONENT: f64 = 64.0;
 
 /// Why an expression was not understood, and where in it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Misread {
+pub(in crate::setting) struct Misread {
     /// The bytes of the expression in question; empty at its end.
     pub place: Range<usize>,
     pub message: String,
@@ -20,7 +20,7 @@ pub(super) struct Misread {
 }
 
 impl Misread {
-    pub(super) fn at(place: Range<usize>, message: impl Into<String>) -> Self {
+    pub(in crate::setting) fn at(place: Range<usize>, message: impl Into<String>) -> Self {
         Self {
             place,
             message: message.into(),
@@ -29,13 +29,13 @@ impl Misread {
         }
     }
 
-    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+    pub(in crate::setting) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 }
 
-pub(super) type Read<T> = Result<T, Misread>;
+pub(in crate::setting) type Read<T> = Result<T, Misread>;
 
 /// A part of an expression.
 #[derive(Debug, Clone)]
@@ -117,11 +117,15 @@ pub(super) fn quotient(first: Part, second: Part) -> Read<Part> {
 
 pub(super) fn power(base: Part, exponent: Part) -> Read<Part> {
     let Some(n) = exponent.number.filter(|n| n.trunc() == *n) else {
-        return Err(Misread::at(
-            exponent.place,
-            "an exponent must be a whole number, as in s^2",
-        )
-        .help("other powers of numbers: exp(y*log(x)), sqrt(x)"));
+        return match (base.degree, exponent.degree) {
+            (None, None) => Ok(base.with(exponent, Op::Raise, None)),
+            (_, Some(_)) => Err(Misread::at(exponent.place, "an exponent with s in it")
+                .help("P and Q are polynomials: exponents are of parameters alone")),
+            (Some(_), None) => Err(Misread::at(
+                exponent.place,
+                "an exponent of what has s in it must be a whole number, as in s^2",
+            )),
+        };
     };
     let place = exponent.place.clone();
     if n.abs() > LARGEST_EXPONENT {
