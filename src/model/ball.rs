@@ -199,6 +199,14 @@ impl Ball {
         Self::of(value, error, SEVERAL * UNIT * value.abs())
     }
 
+    /// 1/cosh; its slope, tanh/cosh, is at most a half.
+    pub(crate) fn sech(self) -> Self {
+        let value = 1.0 / cosh(self.value);
+        let least = cosh((self.value.abs() - self.error).max(0.0));
+        let slope = (1.0 / least).min(0.5);
+        Self::of(value, self.error * slope, SEVERAL * UNIT * value)
+    }
+
     pub(crate) fn atan(self) -> Self {
         let value = atan(self.value);
         let least = (self.value.abs() - self.error).max(0.0);
@@ -263,6 +271,7 @@ mod tests {
                 (wide.sinh(), x.sinh()),
                 (wide.cosh(), x.cosh()),
                 (wide.tanh(), x.tanh()),
+                (wide.sech(), 1.0 / x.cosh()),
                 (wide.atan(), x.atan()),
                 (wide.raised(Ball::exact(exponent)), x.powf(exponent)),
             ];
@@ -308,6 +317,7 @@ mod tests {
                 (a.sinh(), x.sinh()),
                 (a.cosh(), x.cosh()),
                 (a.tanh(), x.tanh()),
+                (a.sech(), 1.0 / x.cosh()),
                 (a.atan(), x.atan()),
                 (a.raised(b), x.powf(y)),
                 (a.raised(Ball::exact(y)), x.powf(y)),

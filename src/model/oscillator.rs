@@ -225,7 +225,7 @@ impl SlidingPoint {
         let v0 = ModelError::positive("v0", v0)?;
         Ok(Self {
             mu_k: law.posed_at(v0)?,
-            mu_prime: law.mu_prime(v0),
+            mu_prime: law.slope_at(v0)?,
         })
     }
 }

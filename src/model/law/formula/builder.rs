@@ -78,7 +78,17 @@ impl Builder {
         }
     }
 
+    /// A quotient; one by cosh does not overflow.
     pub(crate) fn quotient(&mut self, a: Operand, b: Operand) -> Operand {
+        if let Operand::Node(b) = b
+            && let Node::Cosh(of) = self.nodes[usize::from(b)]
+        {
+            let Operand::Node(tanh) = self.add(Node::Tanh(of)) else {
+                return a;
+            };
+            let sech = self.add(Node::Sech(of, tanh));
+            return self.product(a, sech);
+        }
         match (a, b) {
             (Operand::Number(a), Operand::Number(b)) => Operand::Number(a / b),
             (Operand::Node(a), Operand::Number(b)) => self.affine(a, 1.0 / b, 0.0),

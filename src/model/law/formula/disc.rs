@@ -40,6 +40,17 @@ impl Disc {
         (sinh(self.0.error), 2.0 * half * half)
     }
 
+    /// The least of |cosh z|² = sinh²(Re z) + cos²(Im z), or less.
+    fn least_cosh_square(self) -> f64 {
+        let Ball { value, error } = self.0;
+        let real = sinh((value.abs() - error).max(0.0));
+        let imaginary = match error < std::f64::consts::FRAC_PI_2 {
+            true => cos(error),
+            false => 0.0,
+        };
+        real * real + imaginary * imaginary
+    }
+
     /// A function whose derivative is another one, whose own is plus or minus the first: sin and
     /// cos, sinh and cosh.
     fn circular(self, value: Ball, slope: Ball) -> Self {
@@ -111,18 +122,18 @@ impl Number for Disc {
         self.circular(self.middle().cosh(), self.middle().sinh())
     }
 
-    /// The slope is 1/cosh², and |cosh z|² = sinh²(Re z) + cos²(Im z).
+    /// The slope is 1/cosh².
     fn tanh(self) -> Self {
-        let Ball { value, error } = self.0;
-        let real = sinh((value.abs() - error).max(0.0));
-        let imaginary = match error < std::f64::consts::FRAC_PI_2 {
-            true => cos(error),
-            false => 0.0,
-        };
         Self::about(
             self.middle().tanh(),
-            error / (real * real + imaginary * imaginary),
+            self.0.error / self.least_cosh_square(),
         )
+    }
+
+    /// It is no farther from its middle than both are from 0 together.
+    fn sech(self) -> Self {
+        let middle = self.middle().sech();
+        Self::about(middle, middle.value + 1.0 / self.least_cosh_square().sqrt())
     }
 
     /// The slope is 1/((z − i)(z + i)).
@@ -160,6 +171,7 @@ mod tests {
                 (disc.sinh(), z.sinh()),
                 (disc.cosh(), z.cosh()),
                 (disc.tanh(), z.tanh()),
+                (disc.sech(), 1.0 / z.cosh()),
                 (disc.atan(), z.atan()),
                 (disc.times(disc), z * z),
                 (Disc::of(1.0).over(disc), 1.0 / z),

@@ -32,6 +32,7 @@ pub(crate) const MOST_NODES: usize = 64;
 const PARTS: u32 = 64;
 /// What coefficients are allowed to be, for a message.
 const POSITIVE: &str = "finite and greater than 0 at every speed";
+const FINITE: &str = "finite at every speed above 0";
 /// The terms of a formula's series in the speed that tell its scale.
 const OF_SCALE: usize = 8;
 
@@ -58,6 +59,8 @@ pub(crate) enum Node {
     Sinh(u8),
     Cosh(u8),
     Tanh(u8),
+    /// 1/cosh of a node, of which the other is tanh.
+    Sech(u8, u8),
     Atan(u8),
 }
 
@@ -73,7 +76,7 @@ impl Node {
         match self {
             Self::Linear(..) => [None, None],
             Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) => [Some(a), Some(b)],
-            Self::Quotient(a, b) => [Some(a), Some(b)],
+            Self::Quotient(a, b) | Self::Sech(a, b) => [Some(a), Some(b)],
             Self::Affine(a, ..) | Self::Over(_, a) | Self::Power(a, _) => [Some(a), None],
             Self::Exp(a, _) | Self::Ln(a) | Self::Sin(a) | Self::Cos(a) => [Some(a), None],
             Self::Sinh(a) | Self::Cosh(a) | Self::Tanh(a) | Self::Atan(a) => [Some(a), None],
@@ -98,6 +101,7 @@ impl Node {
             Self::Sinh(a) => Self::Sinh(to(a)),
             Self::Cosh(a) => Self::Cosh(to(a)),
             Self::Tanh(a) => Self::Tanh(to(a)),
+            Self::Sech(a, b) => Self::Sech(to(a), to(b)),
             Self::Atan(a) => Self::Atan(to(a)),
         }
     }
@@ -130,6 +134,7 @@ impl Formula {
                 Node::Sinh(a) => of(a).sinh(),
                 Node::Cosh(a) => of(a).cosh(),
                 Node::Tanh(a) => of(a).tanh(),
+                Node::Sech(a, _) => of(a).sech(),
                 Node::Atan(a) => of(a).atan(),
             };
             values[i] = last;
@@ -197,6 +202,15 @@ impl FrictionLaw {
     pub(crate) fn posed_at(&self, speed: f64) -> Result<f64, ModelError> {
         let mu_k = self.mu_k(speed);
         let checked = ModelError::check("mu_k", mu_k, POSITIVE, mu_k > 0.0);
+        checked.map_err(|error| error.at_speed(speed))
+    }
+
+    /// μ_K′ at a speed above 0, where a formula need not have one.
+    ///
+    /// # Errors
+    /// It must be finite.
+    pub(crate) fn slope_at(&self, speed: f64) -> Result<f64, ModelError> {
+        let checked = ModelError::check("mu_prime", self.mu_prime(speed), FINITE, true);
         checked.map_err(|error| error.at_speed(speed))
     }
 }

@@ -22,6 +22,8 @@ pub(super) trait Number: Copy {
     fn sinh(self) -> Self;
     fn cosh(self) -> Self;
     fn tanh(self) -> Self;
+    /// 1/cosh.
+    fn sech(self) -> Self;
     fn atan(self) -> Self;
 }
 
@@ -80,6 +82,10 @@ impl Number for f64 {
 
     fn tanh(self) -> Self {
         tanh(self)
+    }
+
+    fn sech(self) -> Self {
+        1.0 / cosh(self)
     }
 
     fn atan(self) -> Self {
@@ -209,12 +215,18 @@ impl<T: Number> Number for Jet<T> {
     }
 
     fn tanh(self) -> Self {
-        let tanh = self.value.tanh();
+        let (tanh, sech) = (self.value.tanh(), self.value.sech());
         // 1/cosh², which rounding cannot make negative.
-        let cosh = self.value.cosh();
-        let slope = T::of(1.0).over(cosh.times(cosh));
+        let slope = sech.times(sech);
         let bend = T::of(-2.0).times(tanh).times(slope);
         self.through([tanh, slope, bend])
+    }
+
+    fn sech(self) -> Self {
+        let (tanh, sech) = (self.value.tanh(), self.value.sech());
+        let slope = sech.times(tanh).negated();
+        let bend = sech.times(tanh.times(tanh).minus(sech.times(sech)));
+        self.through([sech, slope, bend])
     }
 
     fn atan(self) -> Self {
@@ -280,6 +292,10 @@ impl Number for Ball {
 
     fn tanh(self) -> Self {
         self.tanh()
+    }
+
+    fn sech(self) -> Self {
+        self.sech()
     }
 
     fn atan(self) -> Self {

@@ -14,6 +14,9 @@ use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
 const NEAR_REST: f64 = 1e-10;
 /// The shortest step from rest, in the motion's unit of time.
 const SHORTEST: f64 = 1e-13;
+/// Accelerations below this from rest may be noise; a step lasts so many times until it is outgrown.
+const NOISE: f64 = 1e-7;
+const OUTLASTS: f64 = 8.0;
 /// A step of powers changes their arguments by no more than this part of them.
 const PART: f64 = 0.7;
 /// A divisor above this may be of exponential growth.
@@ -88,6 +91,7 @@ impl FormulaSeries {
                 let cosh = cosh(at(a));
                 (tanh(at(a)), 1.0 / (cosh * cosh))
             }
+            Node::Sech(a, _) => (1.0 / cosh(at(a)), 0.0),
             Node::Atan(a) => (atan(at(a)), 1.0 + at(a) * at(a)),
         };
         (self.of[i][0], self.beside[i][0]) = (own, beside);
@@ -133,6 +137,11 @@ impl FormulaSeries {
                 beside[k] = integrated(slope, own, k);
                 integrated(slope, beside, k)
             }
+            Node::Sech(a, tanh) => {
+                slope[k - 1] = k as f64 * at(a)[k];
+                beside[k - 1] = -product(slope, at(tanh), k - 1);
+                integrated(beside, own, k)
+            }
             Node::Tanh(a) => {
                 steeper(a);
                 let term = integrated(slope, beside, k);
@@ -164,7 +173,7 @@ impl FormulaSeries {
         let at = |place: u8| self.of[usize::from(place)][0];
         match node {
             Node::Exp(a, by) => by * at(a) < -order,
-            Node::Tanh(a) | Node::Atan(a) => at(a).abs() > order,
+            Node::Tanh(a) | Node::Sech(a, _) | Node::Atan(a) => at(a).abs() > order,
             Node::Over(_, a) | Node::Quotient(_, a) => at(a).abs() > FAR,
             _ => false,
         }
@@ -190,7 +199,8 @@ impl FormulaSeries {
     fn at_rest(&self, speed: &[f64], most: f64, error: f64) -> f64 {
         let from = speed[0].abs();
         let mut length = most;
-        while length > SHORTEST {
+        let shortest = shortest(speed).min(most);
+        while length > shortest {
             let off = spread(speed, length);
             let (least, largest) = ((from - off).max(0.0), from + off);
             let around = Ball::between(least * self.velocity_unit, largest * self.velocity_unit);
@@ -201,7 +211,18 @@ impl FormulaSeries {
             }
             length *= SHORTER;
         }
-        length.max(SHORTEST.min(most))
+        length.max(shortest)
+    }
+}
+
+/// The shortest step from rest. Just released, a block may seem to be held by the noise of forces;
+/// the step outlasts that.
+fn shortest(speed: &[f64]) -> f64 {
+    match speed {
+        [0.0, pull, growth, ..] if pull.abs() < NOISE && pull * growth < 0.0 => {
+            SHORTEST.max(OUTLASTS * (pull / growth).abs())
+        }
+        _ => SHORTEST,
     }
 }
 
