@@ -402,9 +402,10 @@ impl<A: Asks> ParameterArgs<A> {
             _ => String::new(),
         };
         Failure::bad_input(format!(
-            "{} = {}{from} is outside its range: {allowed}",
+            "{} = {}{}{from} is outside its range: {allowed}",
             parameter.name(),
             Shown(error.value),
+            error.place(),
         ))
     }
 }

@@ -59,14 +59,21 @@ impl ModelError {
         }
     }
 
+    /// The speed at which a friction law has the value, for a message; empty where it has none.
+    #[must_use]
+    pub fn place(&self) -> String {
+        let at = |speed: f64| format!(" at the speed {}", Shown(speed));
+        self.at_speed.map_or_else(String::new, at)
+    }
+
     fn told(&self) -> String {
         let Self {
             parameter,
             value,
             allowed,
-            at_speed,
+            ..
         } = self;
-        let at = at_speed.map_or_else(String::new, |v| format!(" at the speed {}", Shown(v)));
+        let at = self.place();
         match *parameter {
             // An error of the law has no value.
             "friction" => format!("friction: {allowed} is needed"),

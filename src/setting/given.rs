@@ -29,6 +29,8 @@ pub(super) struct GivenParameters<'t> {
     /// Values of the formula's own parameters, and all that are given, with their places.
     own_values: Vec<(Arc<OwnParameter>, f64)>,
     own_places: Vec<(Arc<OwnParameter>, Range<usize>)>,
+    /// What is wrong with the formula of the friction law.
+    misread: Option<SpecError>,
     /// The formula of the friction law, and the place of its expression.
     formula: Option<(GivenFormula, Range<usize>)>,
     law: Option<(LawKind, Range<usize>)>,
@@ -45,10 +47,11 @@ impl<'t> GivenParameters<'t> {
             ..Self::default()
         };
         // What is wrong with the table is told where it is read.
-        if let Some(Ok(entries)) = document.ahead("friction").map(Entry::table)
-            && let Some(Ok(formula)) = given.read_formula(&entries)
-        {
-            given.formula = Some(formula);
+        let entries = document.ahead("friction").map(Entry::table);
+        match entries.and_then(|entries| given.read_formula(&entries.ok()?)) {
+            Some(Ok(formula)) => given.formula = Some(formula),
+            Some(Err(error)) => given.misread = Some(error),
+            None => {}
         }
         given
     }
@@ -85,19 +88,26 @@ impl<'t> GivenParameters<'t> {
             self.give_own(&own, &axis.key_span)?;
             return Ok(Quantity::Own(own));
         }
-        let own = self.formula.iter().flat_map(|(formula, _)| formula.own());
-        let own: Vec<_> = own.map(|(own, _)| Arc::clone(own)).collect();
-        let parameter = Parameter::from_name(axis.key).ok_or_else(|| {
-            let own = own.iter().map(|own| &*own.name);
-            let known: Vec<&str> = Parameter::ALL
-                .map(Parameter::name)
-                .into_iter()
-                .chain(own)
-                .collect();
-            axis.unknown(&known)
-        })?;
+        let parameter = Parameter::from_name(axis.key);
+        let parameter = parameter.ok_or_else(|| self.unknown_axis(axis))?;
         self.give(parameter, &axis.key_span)?;
         Ok(parameter.into())
+    }
+
+    /// The error of an axis of no known parameter: where the formula is not understood, it may be
+    /// one of its own.
+    fn unknown_axis(&self, axis: &Entry) -> SpecError {
+        if let Some(misread) = &self.misread {
+            return misread.clone();
+        }
+        let formula = self.formula.iter().flat_map(|(formula, _)| formula.own());
+        let own = formula.map(|(own, _)| &*own.name);
+        let known: Vec<&str> = Parameter::ALL
+            .map(Parameter::name)
+            .into_iter()
+            .chain(own)
+            .collect();
+        axis.unknown(&known)
     }
 
     /// Reads one of the tables of parameters. For an unknown name, one of the parameters that the

@@ -3,17 +3,17 @@
 use std::ops::Range;
 
 use super::SweepFile;
-use crate::setting::axis::plane_of_curves;
+use crate::setting::axis::{Axis, plane_of_curves};
 use crate::setting::best_plane::gain_plane;
 use crate::setting::field::Field;
 use crate::setting::given_system::GivenSystem;
 use crate::setting::limit_spec;
 use crate::setting::needs::{FieldsAsked, Stage, no_meaning, unmet};
-use crate::setting::parameter::Parameter;
+use crate::setting::parameter::{Group, Parameter};
 use crate::setting::search::Search;
 use crate::setting::values::Setting;
 use crate::setting::vc_keys::VcKeys;
-use crate::text::SpecError;
+use crate::text::{Shown, SpecError};
 
 impl SweepFile<'_> {
     /// Checks a sweep of sliding or of motions. Returns the search for the critical velocity.
@@ -110,6 +110,14 @@ impl SweepFile<'_> {
 
     /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
+        if fixed.formula().is_some() {
+            let of_law = |axis: &&Axis| match axis.parameter.known() {
+                Some(parameter) => matches!(parameter.group(), Group::Law | Group::Pull),
+                None => true,
+            };
+            let axes: Vec<&Axis> = self.spec.axes.iter().filter(of_law).collect();
+            return self.check_formula(&axes, &mut fixed.clone());
+        }
         let mut worst = fixed.clone();
         for axis in &self.spec.axes {
             let (smallest, largest) = axis.range();
@@ -127,6 +135,34 @@ impl SweepFile<'_> {
             .friction_law()
             .map(|_| ())
             .map_err(|error| self.given.refused(&error))
+    }
+}
+
+/// Formulas, whose worst values are not known beforehand.
+impl SweepFile<'_> {
+    /// Checks that a formula has a coefficient at rest and at v0 for all values of these axes, the
+    /// last ones innermost.
+    fn check_formula(&self, axes: &[&Axis], setting: &mut Setting) -> Result<(), SpecError> {
+        let Some((axis, others)) = axes.split_first() else {
+            let has_v0 = !setting.get(Parameter::V0).is_nan();
+            let law = setting.friction_law().and_then(|_| match has_v0 {
+                true => setting.sliding_point().map(|_| ()),
+                false => Ok(()),
+            });
+            return law.map_err(|error| self.given.refused(&error));
+        };
+        for &value in &axis.values {
+            setting.vary(&axis.parameter, value);
+            self.check_formula(others, setting).map_err(|error| {
+                let at = format!("{} = {}", axis.parameter.name(), Shown(value));
+                let help = match &error.help {
+                    Some(more) => format!("{more}, {at}"),
+                    None => format!("at {at}"),
+                };
+                error.help(help)
+            })?;
+        }
+        Ok(())
     }
 }
 
