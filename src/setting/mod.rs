@@ -9,7 +9,7 @@
 //! - `catalogue`: enumerations with a table of facts, one row for each value
 //! - `command`: the command line for a setting
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
-//! - `friction_table`: the points of a table from a sweep file or from two columns
+//! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
@@ -18,6 +18,7 @@
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
 //! - `linear_model`: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
+//! - `measured`: a measured friction curve from a text of columns
 //! - `needs`: what fields need of a sweep: a row for each need
 //! - `no_answer`: why a setting has no linear model, or no answer
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
@@ -48,7 +49,7 @@ pub mod case_file;
 mod catalogue;
 pub(crate) mod command;
 pub mod field;
-pub mod friction_table;
+mod friction_table;
 mod given;
 mod given_system;
 pub(crate) mod keys;
@@ -56,6 +57,7 @@ pub mod law_kind;
 mod limit_spec;
 pub mod linear_model;
 pub mod map_names;
+pub mod measured;
 pub(crate) mod needs;
 pub mod no_answer;
 mod own_system;
