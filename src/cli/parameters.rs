@@ -8,6 +8,7 @@ use crate::model::{ModelError, RateAndState};
 use crate::setting::Parameter;
 use crate::setting::formula::GivenFormula;
 use crate::setting::law_kind::{LawKind, NO_MOTIONS, NamedLaw};
+use crate::setting::measured::{Columns, CurveOptions, SpeedUnit, Spoken};
 use crate::setting::parameter::Group;
 use crate::setting::quantity::Quantity;
 use crate::setting::simulation::NOT_IN_MOTIONS;
@@ -31,9 +32,17 @@ struct LawArgs {
     /// Friction law, instead of --mu-prime and --mu-k
     #[arg(long, value_parser = law_names(false))]
     friction: Option<String>,
-    /// Points of a measured friction law, for --friction table: two columns, speed and μ_K
+    /// Points of a measured friction law, for --friction table: columns of the speed, and of μ_K
+    /// or a force, which is divided by --normal-load
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
+    /// Columns of --table by title or number: speed, and mu or force, and load where a column has
+    /// it, as in speed=2,force=4 [default: by titles]
+    #[arg(long, value_name = "LIST", value_parser = Columns::read, requires = "table")]
+    columns: Option<Columns>,
+    /// Unit of the speeds in --table, as in mm/s [default: that of their title, else of --units]
+    #[arg(long, value_name = "UNIT", value_parser = SpeedUnit::read, requires = "table")]
+    speed_unit: Option<SpeedUnit>,
     /// Units of the numbers given and told: SI, or those of force, length and time, as in N,mm,s
     /// [default: dimensionless]
     #[arg(long, value_name = "UNITS", value_parser = Units::read)]
@@ -206,10 +215,10 @@ impl<A: Asks> ParameterArgs<A> {
         }
         self.check_no_formula()?;
         let help =
-            "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
+            "--friction table --table FILE.csv, with columns of the speed and of mu_k or a force";
         match (self.law.friction.as_deref(), &self.law.table) {
             (Some(LawKind::TABLE), Some(path)) => {
-                let table = read_table(path, self.given(Parameter::MuS))?;
+                let table = read_table(path, &self.of_curve(), self.given(Parameter::MuS))?;
                 Ok(Some(LawKind::Table(table)))
             }
             (Some(LawKind::TABLE), None) => Err(Failure::bad_input_with_help(
@@ -222,6 +231,17 @@ impl<A: Asks> ParameterArgs<A> {
             )),
             // The flag accepts only the names of laws.
             (name, None) => Ok(name.and_then(NamedLaw::from_name).map(LawKind::Named)),
+        }
+    }
+
+    /// How the file of a measured law is to be read.
+    fn of_curve(&self) -> CurveOptions {
+        CurveOptions {
+            columns: self.law.columns.clone().unwrap_or_default(),
+            normal_load: self.given(Parameter::NormalLoad),
+            speed_unit: self.law.speed_unit.clone(),
+            units: self.units(),
+            spoken: Spoken::Flags,
         }
     }
 
@@ -321,6 +341,9 @@ impl<A: Asks> ParameterArgs<A> {
             table,
             units,
             sets: _,
+            // They are given with a table only.
+            columns: _,
+            speed_unit: _,
         } = &self.law;
         let flags = friction.is_some() || table.is_some() || units.is_some();
         flags || Parameter::ALL.into_iter().any(given)

@@ -3,13 +3,15 @@
 use std::io::{self, Read};
 use std::path::Path;
 
+use encoding_rs::{Encoding, WINDOWS_1252};
+
 use crate::model::Table;
 use crate::report::numbers::bytes;
 use crate::setting::case_file::{TextKind, is_case_file};
-use crate::setting::friction_table::table_of_law;
+use crate::setting::measured::{CurveOptions, Measured};
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::system::SystemModel;
-use crate::setting::table_file::{Inlined, NotInlined};
+use crate::setting::table_file::{Inlined, Named, NotInlined};
 use crate::setting::{CaseSpec, SweepSpec};
 use crate::store::regular::{self, NotRead};
 use crate::sweep::Plan;
@@ -17,6 +19,7 @@ use crate::text::SpecError;
 
 use super::failure::Failure;
 use super::kind::Kind;
+use super::say;
 
 /// The most bytes of a sweep or case file. The text goes into maps and, with up to twice as many
 /// bytes, into manifests.
@@ -82,16 +85,26 @@ pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failur
     read_with_table(path, "setting", |text| PointSpec::read(text, of))
 }
 
-/// Reads a friction curve from the two columns of the file at `path`, for a law with this `mu_s`,
-/// its default if none is given.
-pub(super) fn read_table(path: &Path, mu_s: Option<f64>) -> Result<Table, Failure> {
-    let (name, text) = text_of(path, "table")?;
-    table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
+/// Reads a friction curve from the columns of the file at `path`, for a law with this `mu_s`, its
+/// default if none is given, and tells what was done with its rows.
+pub(super) fn read_table(
+    path: &Path,
+    options: &CurveOptions,
+    mu_s: Option<f64>,
+) -> Result<Table, Failure> {
+    let (name, text) = text_of(path, "table", decoded)?;
+    let failed = |error| Failure::in_file(error, &name, &text);
+    let curve = Measured::read(&text, options).map_err(failed)?;
+    let table = curve.table_of_law(mu_s).map_err(failed)?;
+    for remark in &curve.remarks {
+        say::note(format_args!("{name}: {remark}"));
+    }
+    Ok(table)
 }
 
 /// Reads the system in the file at `path`.
 pub(super) fn read_system(path: &Path) -> Result<SystemModel, Failure> {
-    let (name, text) = text_of(path, "system")?;
+    let (name, text) = text_of(path, "system", utf_8)?;
     text.parse()
         .map_err(|error| Failure::in_file(error, &name, &text))
 }
@@ -106,14 +119,18 @@ fn read_with_table<T>(
     kind: &str,
     parse: impl FnOnce(&str) -> Result<T, SpecError>,
 ) -> Result<T, Failure> {
-    let (name, text) = text_of(path, kind)?;
+    let (name, text) = text_of(path, kind, utf_8)?;
     let folder = match path == Path::new(STANDARD_INPUT) {
         true => None,
         false => path.parent(),
     };
-    let beside = |table: &str| {
-        let path = folder.map_or_else(|| table.into(), |folder| folder.join(table));
-        as_text(regular::read(&path, MOST_BYTES), "table")
+    let beside = |name: &str, of: Named| {
+        let path = folder.map_or_else(|| name.into(), |folder| folder.join(name));
+        let read = regular::read(&path, MOST_BYTES);
+        match of {
+            Named::System => as_text(read, "system", utf_8),
+            Named::Table => as_text(read, "table", decoded),
+        }
     };
     let inlined = match Inlined::new(&text, beside) {
         Ok(inlined) => inlined,
@@ -122,11 +139,17 @@ fn read_with_table<T>(
             return Err(Failure::in_file(error, &name, &text));
         }
     };
+    for remark in &inlined.remarks {
+        say::note(remark);
+    }
     parse(&inlined.text).map_err(|error| Failure::in_file(inlined.in_original(error), &name, &text))
 }
 
+/// How the bytes of a text are read, or why they are none.
+type Decoding = fn(Vec<u8>) -> Result<String, String>;
+
 /// The name and the text of a file, or of standard input.
-fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
+fn text_of(path: &Path, kind: &str, decoding: Decoding) -> Result<(String, String), Failure> {
     if let Some(other @ (Kind::Map | Kind::Trace)) = Kind::of(path) {
         let (message, help) = other.not(path, &format!("a {kind} file"));
         return Err(Failure::bad_input_with_help(message, help));
@@ -138,14 +161,18 @@ fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
         ),
         false => (path.display().to_string(), regular::read(path, MOST_BYTES)),
     };
-    match as_text(read, kind) {
+    match as_text(read, kind, decoding) {
         Ok(text) => Ok((name, text)),
         Err(why) => Err(Failure::bad_input(format!("cannot read {name}: {why}"))),
     }
 }
 
 /// The bytes read, as text, or why they are no text.
-fn as_text(read: Result<Vec<u8>, NotRead>, kind: &str) -> Result<String, String> {
+fn as_text(
+    read: Result<Vec<u8>, NotRead>,
+    kind: &str,
+    decoding: Decoding,
+) -> Result<String, String> {
     let most = || format!("a {kind} file has {} at most", bytes(MOST_BYTES));
     let read = match read {
         Ok(read) if read.len() as u64 > MOST_BYTES => return Err(most()),
@@ -153,7 +180,27 @@ fn as_text(read: Result<Vec<u8>, NotRead>, kind: &str) -> Result<String, String>
         Err(NotRead::Large(_)) => return Err(most()),
         Err(other) => return Err(other.to_string()),
     };
-    String::from_utf8(read).map_err(|_| "it is not UTF-8 text".into())
+    decoding(read)
+}
+
+/// A text that is UTF-8.
+fn utf_8(bytes: Vec<u8>) -> Result<String, String> {
+    String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".into())
+}
+
+/// A text of columns as spreadsheets save it: UTF-8, UTF-16 with a byte order mark, else
+/// Windows-1252.
+fn decoded(bytes: Vec<u8>) -> Result<String, String> {
+    let text = match Encoding::for_bom(&bytes) {
+        Some((encoding, _)) => encoding.decode(&bytes).0.into_owned(),
+        None => String::from_utf8(bytes)
+            .unwrap_or_else(|error| WINDOWS_1252.decode(error.as_bytes()).0.into_owned()),
+    };
+    let no_text = |c: char| c.is_control() && !c.is_whitespace();
+    match text.contains(no_text) {
+        true => Err("it is not text: save the columns as CSV".into()),
+        false => Ok(text),
+    }
 }
 
 /// Reads standard input, up to one byte more than a file may have.

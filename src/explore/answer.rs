@@ -20,6 +20,7 @@ use crate::model::stop::Stop;
 use crate::setting::CaseSpec;
 use crate::setting::command::{point_command, vc_command};
 use crate::setting::point_file::{PointOf, PointSpec};
+use crate::setting::table_file::Inlined;
 use crate::sweep::Plan;
 use crate::sweep::plan::memory;
 
@@ -125,8 +126,8 @@ pub enum Asked {
     CriticalVelocity(PointSpec),
     /// [`Request::Motion`].
     Motion(Box<CaseSpec>, motion::Limits),
-    /// [`Request::Law`].
-    Law(PointSpec),
+    /// [`Request::Law`], with what is told of its points.
+    Law(PointSpec, Vec<String>),
     /// [`Request::Parameters`].
     Parameters,
 }
@@ -137,13 +138,26 @@ impl Asked {
     /// # Errors
     /// When it is not understood, or exceeds the limits.
     pub fn read(request: Request, text: &str, limits: &Limits) -> Result<Self, Problem> {
+        let inlined = Inlined::pasted(text)?;
+        let read = Self::read_inlined(request, &inlined, limits);
+        read.map_err(|problem| Problem {
+            span: problem.span.map(|[start, end]| {
+                let place = inlined.original(start..end);
+                [place.start, place.end]
+            }),
+            ..problem
+        })
+    }
+
+    fn read_inlined(request: Request, of: &Inlined, limits: &Limits) -> Result<Self, Problem> {
+        let Inlined { text, remarks, .. } = of;
         let point = |of| PointSpec::read(text, of);
         Ok(match request {
             Request::Chart => Self::Chart(Chart::plan(text, limits.chart)?),
             Request::Point => Self::Point(point(PointOf::Sliding)?),
             Request::CriticalVelocity => Self::CriticalVelocity(point(PointOf::CriticalVelocity)?),
             Request::Motion => Self::Motion(Box::new(text.parse()?), limits.motion),
-            Request::Law => Self::Law(point(PointOf::Law)?),
+            Request::Law => Self::Law(point(PointOf::Law)?, remarks.clone()),
             Request::Parameters => Self::Parameters,
         })
     }
@@ -156,7 +170,7 @@ impl Asked {
             Self::Chart(plan) => chart::bytes(plan),
             Self::CriticalVelocity(point) => memory::of_critical_velocity(&point.setting),
             Self::Motion(case, limits) => memory::of_motion(&case.setting) + limits.bytes(),
-            Self::Point(_) | Self::Law(_) | Self::Parameters => 0,
+            Self::Point(_) | Self::Law(..) | Self::Parameters => 0,
         }
     }
 
@@ -166,7 +180,7 @@ impl Asked {
         match self {
             Self::Chart(plan) => chart::is_slow(plan),
             Self::CriticalVelocity(_) | Self::Motion(..) => true,
-            Self::Point(_) | Self::Law(_) | Self::Parameters => false,
+            Self::Point(_) | Self::Law(..) | Self::Parameters => false,
         }
     }
 
@@ -217,7 +231,10 @@ impl Asked {
                 let followed = Followed::of(case, *limits, &Stop::when(stop))?;
                 Ok(motion_bytes::encoded(&followed)?)
             }
-            Self::Law(point) => json(&LawCurve::of(point)?),
+            Self::Law(point, remarks) => json(&LawCurve {
+                remarks: remarks.clone(),
+                ..LawCurve::of(point)?
+            }),
             Self::Parameters => json(&Known::all()),
         }
     }

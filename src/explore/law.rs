@@ -32,6 +32,8 @@ pub struct LawCurve {
     pub mu_s: f64,
     /// The points of a table: speed and μ_K.
     pub points: Vec<[f64; 2]>,
+    /// What was done with the rows from which the points were read, and assumed of them.
+    pub remarks: Vec<String>,
     /// The unit of speeds; "1" where none is given.
     pub unit_v: String,
     /// Where the block is pulled, if the setting says.
@@ -91,6 +93,7 @@ impl LawCurve {
                         .collect()
                 }
             },
+            remarks: Vec::new(),
             unit_v: spec.units.of_parameter(Parameter::V0),
             at: v0.map(|v0| LawPoint {
                 v0,

@@ -9,7 +9,7 @@ use crate::text::Shown;
 pub const MOST_POINTS: usize = 4096;
 
 /// Two speeds must differ by more than this, relative to the larger one.
-const NEAREST: f64 = 1e-6;
+pub(crate) const NEAREST: f64 = 1e-6;
 
 /// Allowed sizes of coefficients and of speeds other than 0: far beyond any experiment.
 const SIZES: RangeInclusive<f64> = 1e-12..=1e12;

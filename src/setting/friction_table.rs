@@ -1,10 +1,9 @@
-//! The points of a measured friction law, from a sweep file or a text with two columns.
+//! The points of a measured friction law, as numbers in a sweep or case file.
 
 use std::ops::Range;
 
-use super::parameter::Parameter;
+use crate::model::Table;
 use crate::model::table::{TableColumn, TableError};
-use crate::model::{FrictionLaw, Table};
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// The numbers of one column with their places in the text.
@@ -29,7 +28,7 @@ impl Numbers {
     }
 }
 
-/// The key for all points as pairs, or for the file with the points.
+/// The key for all points as pairs, or for the text with the points.
 pub(super) const PAIRS: &str = "table";
 
 /// The columns of a table in a text.
@@ -56,7 +55,7 @@ impl GivenTable {
 
     /// Reads points as pairs of a speed and a value of μ_K.
     fn read_pairs(&mut self, entry: &Entry) -> Result<(), SpecError> {
-        if entry.string().is_ok() {
+        if entry.string().is_ok() || entry.is_table() {
             let message = "it names a file, which only commands on a sweep or case file read";
             return Err(entry
                 .error(message)
@@ -134,138 +133,4 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
         };
         SpecError::at(span.clone(), error.to_string())
     })
-}
-
-/// What is wrong with a line that is no point.
-const NOT_A_POINT: &str = "this line is not two numbers with decimal points, a speed and mu_k";
-/// What lines are.
-const COLUMNS: &str = "two columns, separated by a comma, a semicolon or blanks; only the first \
-    line may be of titles";
-
-/// Reads a table from a text with one line per point: the speed and μ_K, separated by a comma, a
-/// semicolon or blanks. Empty lines, lines that begin with `#`, and one line of titles before the
-/// first point are skipped.
-///
-/// # Errors
-/// Points at the first line or number that is not understood or out of range, see [`Table::new`].
-pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
-    read_columns(text).map(|(table, _)| table)
-}
-
-/// Reads a table as [`table_of_columns`] does, for a friction law with the static coefficient
-/// `mu_s`, its default if none is given.
-///
-/// # Errors
-/// As there, and when the law is ill-posed, see [`FrictionLaw::table`].
-pub(crate) fn table_of_law(text: &str, mu_s: Option<f64>) -> Result<Table, SpecError> {
-    let (table, at_rest) = read_columns(text)?;
-    let default = Parameter::MuS.default_value().filter(|_| mu_s.is_none());
-    let posed = FrictionLaw::table(table.clone(), mu_s.or(default).unwrap_or(1.0));
-    posed.map_err(|error| SpecError {
-        span: at_rest,
-        ..SpecError::whole(error.with_default_mu_s(default))
-    })?;
-    Ok(table)
-}
-
-/// The table, and the place of its first value of μ_K.
-fn read_columns(text: &str) -> Result<(Table, Option<Range<usize>>), SpecError> {
-    let (mut speeds, mut mu_k) = (Numbers::default(), Numbers::default());
-    let mut titles = false;
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let from = start;
-        start += line.len();
-        let content = line.trim();
-        if content.is_empty() || content.starts_with('#') {
-            continue;
-        }
-        let fields = fields(line, from);
-        let numbers = fields.iter().map(|f| text[f.clone()].parse::<f64>().ok());
-        match numbers.collect::<Vec<_>>()[..] {
-            [Some(speed), Some(mu)] => {
-                speeds.push(speed, fields[0].clone());
-                mu_k.push(mu, fields[1].clone());
-            }
-            [None, None] if speeds.values.is_empty() && !titles => titles = true,
-            _ => {
-                let place = from..from + line.trim_end().len();
-                return Err(SpecError::at(place, NOT_A_POINT).help(COLUMNS));
-            }
-        }
-    }
-    let end = text.len();
-    let table = built(&speeds, &mu_k, &(end..end)).map_err(|error| SpecError {
-        span: error.span.filter(|span| !span.is_empty()),
-        ..error
-    })?;
-    Ok((table, mu_k.places.into_iter().next()))
-}
-
-/// The places of the fields of a line that begins at `from`.
-fn fields(line: &str, from: usize) -> Vec<Range<usize>> {
-    let separated = |c: char| c == ',' || c == ';';
-    // Some spreadsheets write a byte order mark at the beginning.
-    let blank = |c: char| c.is_whitespace() || c == '\u{feff}';
-    let place = |field: &str| {
-        let at = from + (field.as_ptr() as usize - line.as_ptr() as usize);
-        at..at + field.len()
-    };
-    match line.contains(separated) {
-        true => line
-            .split(separated)
-            .map(|f| place(f.trim_matches(blank)))
-            .collect(),
-        false => line
-            .split(blank)
-            .filter(|f| !f.is_empty())
-            .map(place)
-            .collect(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_read() {
-        for text in [
-            "0,0.5\n1,0.4\n",
-            "speed; mu_k\n0; 0.5\n 1;0.4",
-            "\u{feff}0,0.5\n\n1,0.4",
-            "v mu\n# measured\n\n0\t0.5\r\n1  0.4\r\n",
-        ] {
-            let table = table_of_columns(text).unwrap();
-            assert_eq!(table.speeds(), [0.0, 1.0], "{text}");
-            assert_eq!(table.mu_k(), [0.5, 0.4], "{text}");
-        }
-    }
-
-    #[test]
-    fn mistakes_in_columns_are_pointed_at() {
-        for (text, place, says) in [
-            ("", "", "0 points: 2 to 4096 are needed"),
-            ("0,0.5\n", "", "only 1 point: 2 to 4096 are needed"),
-            ("0,0.5\n1\n", "1", "not two numbers"),
-            ("0,0.5\n0.1;0,4\n", "0.1;0,4", "not two numbers"),
-            ("0,0.5\n1,x\n", "1,x", "not two numbers"),
-            ("v\nmu\n0,1\n", "v", "not two numbers"),
-            ("a b\nc d\n", "c d", "not two numbers"),
-            ("0,0.5\n2,0.4\n1,0.4", "1", "speeds = 1 is outside"),
-            ("0,0.5\n1,-4\n", "-4", "mu_k = -4 is outside its range"),
-            ("0,0.5\nnan,1\n", "nan", "speeds = NaN"),
-            ("0 0.5 1\n", "0 0.5 1", "not two numbers"),
-            (
-                "0,1.5\n1,0.4\n",
-                "1.5",
-                "at most mu_s = 1 (not given: the default), else",
-            ),
-        ] {
-            let error = table_of_law(text, None).unwrap_err();
-            assert!(error.message.contains(says), "{text}: {error}");
-            let found = error.span.clone().map_or("", |span| &text[span]);
-            assert_eq!(found, place, "{text}: {error}");
-        }
-    }
 }

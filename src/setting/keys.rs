@@ -195,10 +195,44 @@ pub(crate) const FRICTION_TABLE: [Key; 4] = [
     ),
     key(
         "table",
-        "the name of a file of two columns, or a list of pairs [speed, mu_k]",
+        "the name of a file of columns, a table of keys, or a list of pairs [speed, mu_k]",
         "none",
         "with law = \"table\": the points, in place of both lists; a name is read from the folder \
          of the file it stands in",
+    ),
+];
+
+/// The keys of a measured curve, `table` of `[friction]`.
+pub(crate) const CURVE: [Key; 5] = [
+    key(
+        "file",
+        "the name of a file of columns",
+        "none: then text",
+        "the file with the points",
+    ),
+    key(
+        "text",
+        "a text of columns",
+        "none: then file",
+        "the points as text, in place of a file",
+    ),
+    key(
+        "columns",
+        "a list like \"speed=2,mu=3\" or \"speed=v,force=F,load=5\"",
+        "by titles, or the only two columns of numbers",
+        "the columns of speed, and mu or force and load, by title or number",
+    ),
+    key(
+        "normal_load",
+        "a number from 1e-12 to 1e12",
+        "normal_load in `[fixed]`",
+        "the load by which a force is divided where no column has it",
+    ),
+    key(
+        "speed_unit",
+        "a length over a time, like \"mm/s\"",
+        "the unit in the title, or else that of `[units]`",
+        "the unit of the speeds, which are turned into that of `[units]`",
     ),
 ];
 
@@ -386,6 +420,7 @@ mod tests {
             &SWEEP[..],
             &RANGE,
             &FRICTION_TABLE,
+            &CURVE,
             &SIMULATION,
             &BASIN,
             &UNITS,

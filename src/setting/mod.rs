@@ -11,7 +11,7 @@
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `formula`: a friction law as an expression in the speed
-//! - `friction_table`: the points of a table from a sweep file or from two columns
+//! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
@@ -20,6 +20,7 @@
 //! - `limit_spec`: sweeps of the limit of a short delay, and what they may contain
 //! - `linear_model`: the feedback, the groups and the linear model of a setting
 //! - `map_names`: the names in a map that no parameter of a system may have; the most axes
+//! - `measured`: a measured friction curve from a text of columns
 //! - `needs`: what fields need of a sweep: a row for each need
 //! - `no_answer`: why a setting has no linear model, or no answer
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
@@ -52,7 +53,7 @@ pub(crate) mod command;
 mod expression;
 pub mod field;
 pub mod formula;
-pub mod friction_table;
+mod friction_table;
 mod given;
 mod given_system;
 pub(crate) mod keys;
@@ -60,6 +61,7 @@ pub mod law_kind;
 mod limit_spec;
 pub mod linear_model;
 pub mod map_names;
+pub mod measured;
 pub(crate) mod needs;
 pub mod no_answer;
 mod own_system;

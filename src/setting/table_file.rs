@@ -4,8 +4,12 @@
 
 use std::ops::Range;
 
-use super::friction_table::{PAIRS, table_of_columns};
+use super::friction_table::PAIRS;
+use super::keys::{CURVE, names};
+use super::measured::{Columns, CurveOptions, Measured, SpeedUnit, Spoken};
+use super::parameter::Parameter;
 use super::system::{SystemModel, shipped};
+use super::units::read_units;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// A text in which the names of other files are replaced by their contents.
@@ -13,8 +17,19 @@ use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 pub(crate) struct Inlined {
     /// The text that is read and stored.
     pub text: String,
+    /// What is told of the contents.
+    pub remarks: Vec<String>,
     /// The place of the name in the original text, and the place of the contents in the new one.
     places: Option<(Range<usize>, Range<usize>)>,
+}
+
+/// What a named file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Named {
+    /// A system, as TOML.
+    System,
+    /// The columns of a measured curve.
+    Table,
 }
 
 /// Why the contents of a named file could not be put into a text.
@@ -40,39 +55,78 @@ impl From<SpecError> for NotInlined {
 }
 
 impl Inlined {
-    /// Puts the system that `system` names, or the points of the file that `friction.table` names,
-    /// into `text`, if it names one. `read` returns the text of a file, or says why it cannot be
-    /// read.
+    /// Puts the system that `system` names, or the points that `friction.table` names or holds as a
+    /// text of columns, into `text`, if there are such. `read` returns the text of a file, or says
+    /// why it cannot be read.
     ///
     /// # Errors
-    /// At the name, when the file cannot be read or does not contain a table. Inside the named
-    /// file, when it is not a valid system.
-    /// system: in that file.
+    /// At the name, when the file cannot be read. Inside the named file, when it is not a valid
+    /// system or curve.
     pub(crate) fn new(
         text: &str,
-        read: impl FnOnce(&str) -> Result<String, String>,
+        read: impl FnOnce(&str, Named) -> Result<String, String>,
     ) -> Result<Self, NotInlined> {
-        let unchanged = Self {
-            text: text.to_owned(),
-            places: None,
-        };
         // Text that is no TOML is reported by its reader.
         let Ok(document) = parse(text) else {
-            return Ok(unchanged);
+            return Ok(Self::unchanged(text));
         };
         let all = entries(document.get_ref(), "");
         let system = all.iter().find(|entry| entry.key == "system");
         if let Some((entry, Ok(name))) = system.map(|entry| (entry, entry.string())) {
-            return Ok(Self::with(text, entry, &system_of(entry, name, read)?));
+            let system = system_of(entry, name, |name| read(name, Named::System))?;
+            return Ok(Self::with(text, entry, &system));
         }
-        let friction = all.into_iter().filter(|entry| entry.key == "friction");
-        let inside = friction.filter_map(|entry| entry.table().ok()).flatten();
-        let mut tables = inside.filter(|entry| entry.key == PAIRS);
-        let named = tables.find_map(|entry| Some((entry.string().ok()?, entry)));
-        let Some((name, entry)) = named else {
-            return Ok(unchanged);
+        let Some(entry) = curve(&all) else {
+            return Ok(Self::unchanged(text));
         };
-        Ok(Self::with(text, &entry, &points(&entry, name, read)?))
+        let keys = CurveKeys::of(&entry, &all)?;
+        let name = match &keys.source {
+            Source::Text(columns) => return Ok(Self::with_columns(text, &entry, columns, &keys)?),
+            Source::File(name) => name,
+        };
+        let columns = read(name.string()?, Named::Table);
+        let name = name.string()?;
+        let columns = columns.map_err(|why| entry.error(format!("cannot read {name}: {why}")))?;
+        match Self::with_points(text, &entry, &columns, &keys.options) {
+            Ok(mut inlined) => {
+                let named = |remark: &String| format!("{name}: {remark}");
+                inlined.remarks = inlined.remarks.iter().map(named).collect();
+                Ok(inlined)
+            }
+            Err(error) => Err(NotInlined::There {
+                name: name.to_owned(),
+                text: columns,
+                error,
+            }),
+        }
+    }
+
+    /// Puts points that `friction.table` holds as a text of columns into `text`. Names of files are
+    /// left alone.
+    ///
+    /// # Errors
+    /// At the text of columns, when it is no valid curve.
+    pub(crate) fn pasted(text: &str) -> Result<Self, SpecError> {
+        let Ok(document) = parse(text) else {
+            return Ok(Self::unchanged(text));
+        };
+        let all = entries(document.get_ref(), "");
+        let Some(entry) = curve(&all).filter(Entry::is_table) else {
+            return Ok(Self::unchanged(text));
+        };
+        let keys = CurveKeys::of(&entry, &all)?;
+        match &keys.source {
+            Source::Text(columns) => Self::with_columns(text, &entry, columns, &keys),
+            Source::File(_) => Ok(Self::unchanged(text)),
+        }
+    }
+
+    fn unchanged(text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            remarks: Vec::new(),
+            places: None,
+        }
     }
 
     /// `text` with the value of an entry replaced.
@@ -81,23 +135,150 @@ impl Inlined {
         let new = old.start..old.start + value.len();
         Self {
             text: [&text[..old.start], value, &text[old.end..]].concat(),
+            remarks: Vec::new(),
             places: Some((old, new)),
+        }
+    }
+
+    /// `text` with the points of columns in the place of an entry; the columns are the value of
+    /// another entry, at which errors are told.
+    fn with_columns(
+        text: &str,
+        entry: &Entry,
+        columns: &Entry,
+        keys: &CurveKeys,
+    ) -> Result<Self, SpecError> {
+        let read = Self::with_points(text, entry, columns.string()?, &keys.options);
+        read.map_err(|error| SpecError {
+            span: Some(columns.span.clone()),
+            ..error
+        })
+    }
+
+    /// `text` with the points of columns in the place of an entry.
+    fn with_points(
+        text: &str,
+        entry: &Entry,
+        columns: &str,
+        options: &CurveOptions,
+    ) -> Result<Self, SpecError> {
+        let measured = Measured::read(columns, options)?;
+        let table = measured.table()?;
+        let pairs = table.speeds().iter().zip(table.mu_k());
+        let pairs: Vec<String> = pairs
+            .map(|(speed, mu)| format!("[{speed:?}, {mu:?}]"))
+            .collect();
+        Ok(Self {
+            remarks: measured.remarks.iter().map(ToString::to_string).collect(),
+            ..Self::with(text, entry, &format!("[{}]", pairs.join(", ")))
+        })
+    }
+
+    /// A place in [`Inlined::text`] as a place of the original text.
+    #[must_use]
+    pub(crate) fn original(&self, place: Range<usize>) -> Range<usize> {
+        match &self.places {
+            Some((old, new)) if place.start >= new.end => {
+                let shifted = |at: usize| at - new.end + old.end;
+                shifted(place.start)..shifted(place.end)
+            }
+            Some((old, new)) if place.end > new.start => old.clone(),
+            _ => place,
         }
     }
 
     /// An error in [`Inlined::text`], moved to its place in the original text.
     #[must_use]
-    pub(crate) fn in_original(&self, mut error: SpecError) -> SpecError {
-        if let (Some((old, new)), Some(span)) = (&self.places, &mut error.span) {
-            if span.start >= new.end {
-                let shifted = |at: usize| at - new.end + old.end;
-                *span = shifted(span.start)..shifted(span.end);
-            } else if span.end > new.start {
-                *span = old.clone();
-            }
+    pub(crate) fn in_original(&self, error: SpecError) -> SpecError {
+        SpecError {
+            span: error.span.map(|span| self.original(span)),
+            ..error
         }
-        error
     }
+}
+
+/// The entry of a friction law's points, where they are in a file or a text of columns.
+fn curve<'t>(all: &[Entry<'t>]) -> Option<Entry<'t>> {
+    let friction = all.iter().filter(|entry| entry.key == "friction");
+    let inside = friction.filter_map(|entry| entry.table().ok()).flatten();
+    let mut tables = inside.filter(|entry| entry.key == PAIRS);
+    tables.find(|entry| entry.string().is_ok() || entry.is_table())
+}
+
+/// Where the columns of a curve are, as entries of strings.
+enum Source<'t> {
+    File(Entry<'t>),
+    Text(Entry<'t>),
+}
+
+/// What is said of a curve beside a sweep or case file's own numbers.
+struct CurveKeys<'t> {
+    source: Source<'t>,
+    options: CurveOptions,
+}
+
+impl<'t> CurveKeys<'t> {
+    /// The keys of an entry: the name of a file, or a table. The load is that of `[fixed]` unless
+    /// it is given.
+    fn of(entry: &Entry<'t>, all: &[Entry<'t>]) -> Result<Self, SpecError> {
+        let units = all.iter().find(|entry| entry.key == "units");
+        let mut options = CurveOptions {
+            normal_load: fixed_load(all),
+            // Units that are not understood are reported by their reader.
+            units: units
+                .and_then(|units| read_units(units).ok())
+                .unwrap_or_default(),
+            spoken: Spoken::Keys,
+            ..CurveOptions::default()
+        };
+        if !entry.is_table() {
+            let source = Source::File(entry.clone());
+            return Ok(Self { source, options });
+        }
+        let mut keys = entry.document(names(&CURVE))?;
+        let [file, text] = ["file", "text"].map(|key| keys.take(key, string));
+        options.columns = keys
+            .take("columns", |entry| read_as(entry, Columns::read))
+            .unwrap_or_default();
+        options.speed_unit = keys.take("speed_unit", |entry| read_as(entry, SpeedUnit::read));
+        let load = keys.take("normal_load", |entry| {
+            let checked = Parameter::NormalLoad.check(entry.number()?);
+            checked.map_err(|error| SpecError::at(entry.span.clone(), error.to_string()))
+        });
+        options.normal_load = load.or(options.normal_load);
+        keys.finish()?;
+        let source = match (file, text) {
+            (Some(file), None) => Source::File(file),
+            (None, Some(text)) => Source::Text(text),
+            _ => {
+                let message = "expected either the name of a file or its text";
+                return Err(entry
+                    .error(message)
+                    .help("table = { file = \"curve.csv\", … }"));
+            }
+        };
+        Ok(Self { source, options })
+    }
+}
+
+/// The load in `[fixed]`, if it is there.
+fn fixed_load(all: &[Entry]) -> Option<f64> {
+    let fixed = all
+        .iter()
+        .find(|entry| entry.key == "fixed")?
+        .table()
+        .ok()?;
+    let name = Parameter::NormalLoad.name();
+    fixed.iter().find(|entry| entry.key == name)?.number().ok()
+}
+
+fn string<'t>(entry: &Entry<'t>) -> Result<Entry<'t>, SpecError> {
+    entry.string().map(|_| entry.clone())
+}
+
+/// A string that is read as something.
+fn read_as<T>(entry: &Entry, read: fn(&str) -> Result<T, String>) -> Result<T, SpecError> {
+    read(entry.string()?).map_err(|why| entry.error(why))
 }
 
 /// The shipped system `name`, or the system of the file `name`, as a table.
@@ -124,30 +305,6 @@ fn system_of(
     }
 }
 
-/// The points of the file `name` as a list of pairs.
-fn points(
-    entry: &Entry,
-    name: &str,
-    read: impl FnOnce(&str) -> Result<String, String>,
-) -> Result<String, SpecError> {
-    let text = read(name).map_err(|why| entry.error(format!("cannot read {name}: {why}")))?;
-    let table = table_of_columns(&text).map_err(|error| {
-        let line = error
-            .span
-            .map(|span| 1 + text[..span.start].matches('\n').count());
-        let line = line.map_or_else(String::new, |line| format!(":{line}"));
-        SpecError {
-            help: error.help,
-            ..entry.error(format!("{name}{line}: {}", error.message))
-        }
-    })?;
-    let pairs = table.speeds().iter().zip(table.mu_k());
-    let pairs: Vec<String> = pairs
-        .map(|(speed, mu)| format!("[{speed:?}, {mu:?}]"))
-        .collect();
-    Ok(format!("[{}]", pairs.join(", ")))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,10 +313,13 @@ mod tests {
 
     const CURVE: &str = "speed,mu\n0,0.5\n0.25,0.30000000000000004\n";
 
+    const BAD: &str = "speed,mu\n0,0.5\n\n0.25,-1\n";
+
     fn inlined(text: &str) -> Result<Inlined, SpecError> {
-        Inlined::new(text, |name| match name {
+        Inlined::new(text, |name, _| match name {
             "curve.csv" => Ok(CURVE.to_owned()),
-            "bad.csv" => Ok("speed,mu\n0,0.5\n\n0.25,x\n".to_owned()),
+            "bad.csv" => Ok(BAD.to_owned()),
+            "force.csv" => Ok("a b c\n1 1.5 20\n2 1 10\n".to_owned()),
             _ => Err("there is none".to_owned()),
         })
         .map_err(|error| match error {
@@ -197,10 +357,11 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told_at_the_name_with_the_line_of_the_file() {
+    fn mistakes_are_told_at_their_place() {
         let place = |text: &str| {
             let error = inlined(text).unwrap_err();
-            (text[error.span.unwrap()].to_owned(), error.message)
+            let span = error.span.unwrap();
+            (text.get(span).unwrap_or_default().to_owned(), error.message)
         };
         let (at, message) = place("friction.table = \"none.csv\"");
         assert_eq!(at, "\"none.csv\"");
@@ -208,11 +369,66 @@ mod tests {
             message,
             "friction.table: cannot read none.csv: there is none"
         );
-        let (_, message) = place("friction.table = \"bad.csv\"");
-        assert!(
-            message.contains("bad.csv:4: this line is not two"),
-            "{message}"
-        );
+        // In the named file.
+        let error = inlined("friction.table = \"bad.csv\"").unwrap_err();
+        assert_eq!(&BAD[error.span.unwrap()], "-1");
+        for (table, at, says) in [
+            ("text = '0;0.5'", "'0;0.5'", "only 1 point"),
+            ("text = '0', columns = \"3\"", "\"3\"", "a list like"),
+            (
+                "file = 'none.csv', speed_unit = \"m\"",
+                "\"m\"",
+                "no known unit",
+            ),
+            (
+                "text = '0', normal_load = -1",
+                "-1",
+                "normal_load = -1 is outside",
+            ),
+            ("text = '0', column = 1", "column", "unknown key"),
+            (
+                "columns = \"mu=2\"",
+                "{ columns = \"mu=2\" }",
+                "either the name",
+            ),
+        ] {
+            let (found, message) = place(&format!("friction.table = {{ {table} }}"));
+            assert!(found == at && message.contains(says), "{found}: {message}");
+        }
+    }
+
+    /// The load of forces is that of the curve, else that of the setting.
+    #[test]
+    fn a_table_of_keys_says_how_columns_are_read() {
+        let read = |keys: &str| {
+            let text = "units = \"SI\"\nfixed.normal_load = 2\nfixed.v0 = 0.1\nfixed.tau = 1\n";
+            let law = format!("friction.law = \"table\"\nfriction.table = {{ {keys} }}\n");
+            let found = inlined(&format!("{text}{law}")).unwrap();
+            let spec: CaseSpec = found.text.parse().unwrap();
+            match spec.setting.law() {
+                Some(LawKind::Table(table)) => (table.speeds().to_vec(), table.mu_k().to_vec()),
+                _ => panic!("{keys}"),
+            }
+        };
+        let text = r#"text = "n;F;v\n1;1,5;20\n2;1;10""#;
+        let unit = r#"speed_unit = "mm/s""#;
+        let expected = |load: f64| (vec![0.01, 0.02], vec![1.0 / load, 1.5 / load]);
+        assert_eq!(read(&format!("{text}, {unit}")), expected(2.0));
+        let load = format!("{text}, {unit}, normal_load = 4");
+        assert_eq!(read(&load), expected(4.0));
+        let file = format!("file = 'force.csv', {unit}, columns = \"speed=3,force=2\"");
+        assert_eq!(read(&file), expected(2.0));
+    }
+
+    #[test]
+    fn only_text_is_read_where_there_are_no_files() {
+        let text = "friction = { law = \"table\", table = { text = \"0 0.5\\n1 0.4\\nx\" } }\n";
+        let pasted = Inlined::pasted(text).unwrap();
+        assert!(pasted.text.contains("table = [[0.0, 0.5], [1.0, 0.4]] }"));
+        assert_eq!(pasted.remarks, ["line 3 is left out: it is no numbers"]);
+        for text in ["friction.table = \"a.csv\"", "system = \"turning\"", "= 3"] {
+            assert_eq!(Inlined::pasted(text).unwrap().text, text);
+        }
     }
 
     /// Places before, inside and after the points are mapped to the original text.

@@ -56,6 +56,7 @@ pub(crate) fn unknown_key(path: &str, key: &str, known: &[&str]) -> SpecError {
 }
 
 /// A value with its key, its path in the text, and the places of both.
+#[derive(Clone)]
 pub(crate) struct Entry<'t> {
     pub key: &'t str,
     /// Dotted path, for messages.

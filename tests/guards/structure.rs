@@ -197,7 +197,8 @@ fn libraries_stay_in_their_rooms() {
         ("libm", "src/model/elementary.rs"),
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
-        ("csv", "src/report/table"),
+        ("csv", "src/report/table, src/setting/measured/sheet.rs"),
+        ("encoding_rs", "src/cli/sweep_file.rs"),
         ("maud", "src/letter/page.rs"),
         ("axum", "src/serve"),
         ("clap", "src/cli"),
@@ -207,6 +208,7 @@ fn libraries_stay_in_their_rooms() {
         let mut seen = false;
         for path in sources(Path::new("src")) {
             let code = code(&path);
+            let inside = room.split(", ").any(|room| path.starts_with(room));
             let used = [
                 format!("use {library}::"),
                 format!(" {library}::"),
@@ -214,11 +216,7 @@ fn libraries_stay_in_their_rooms() {
             ]
             .iter()
             .any(|form| code.contains(form));
-            assert!(
-                !used || path.starts_with(room),
-                "{} uses {library}",
-                path.display()
-            );
+            assert!(!used || inside, "{} uses {library}", path.display());
             seen |= used;
         }
         assert!(seen, "{library} is used in {room}");

@@ -785,7 +785,7 @@ fn a_measured_friction_law_goes_through_every_command() {
         ("curve.csv", curve),
         ("map.toml", &sweep),
         ("case.toml", &case),
-        ("bad.csv", "speed, mu_k\n0, 0.5\n0.2, 0.45\n0.2, 0.4\n"),
+        ("bad.csv", "speed, mu_k\n0, 0.5\n0.2, 0.45\n0.3, -0.4\n"),
         ("fast.csv", "0 1.5\n1 0.5\n"),
     ]);
     let point = ["point", "--tau", "3.4", "--alpha-v", "-0.17", "--json"];

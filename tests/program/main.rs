@@ -3,6 +3,8 @@
 
 #[path = "../common/chance.rs"]
 mod chance;
+#[path = "../common/curve_files.rs"]
+mod curve_files;
 #[path = "../common/general_rows.rs"]
 mod general_rows;
 #[path = "../common/limited.rs"]
@@ -14,6 +16,7 @@ mod program;
 
 mod actuators;
 mod cli;
+mod curves;
 mod damaged;
 mod export;
 mod flips;

@@ -3,6 +3,8 @@
 #[cfg(target_os = "linux")]
 #[path = "../common/chance.rs"]
 mod chance;
+#[path = "../common/curve_files.rs"]
+mod curve_files;
 #[cfg(target_os = "linux")]
 #[path = "../common/map.rs"]
 mod map;
@@ -14,6 +16,7 @@ mod program;
 #[path = "../common/server.rs"]
 mod server;
 
+mod curves;
 mod openapi;
 mod serve;
 mod serve_maps;

@@ -245,6 +245,12 @@ fn sweep_files(page: &mut String) {
     heading(page, 2, "`[friction]`");
     paragraph(page, "Besides the [parameters of the law](laws.md):");
     keys_of(page, &keys::FRICTION_TABLE);
+    heading(page, 2, "A measured curve");
+    paragraph(
+        page,
+        "The keys of `table` in `[friction]`, where it is a table itself:",
+    );
+    keys_of(page, &keys::CURVE);
     heading(page, 2, "`[simulation]`");
     keys_of(page, &keys::SIMULATION);
     heading(page, 2, "`[basin]`");

@@ -4,9 +4,15 @@ import { SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
-import { highestOf, parametersOf, pointTexts } from "./sweep.js";
+import { parametersOf, pointTexts } from "./sweep.js";
 
 const STEPS = 1000;
+/** What is said of a measured law: the inputs, and where the state has them. */
+const TABLE_INPUTS = [
+  ["law-table", "table"],
+  ["law-columns", "columns"],
+  ["law-speed-unit", "speedUnit"],
+];
 
 export class Controls {
   /**
@@ -46,11 +52,13 @@ export class Controls {
       this.changed();
     });
     element("law").addEventListener("change", (event) => this.takeLaw(event.target.value));
-    element("law-table").addEventListener("input", (event) => {
-      state.table = event.target.value;
-      this.changed();
-      this.#tellLaw();
-    });
+    for (const [id, key] of TABLE_INPUTS) {
+      element(id).addEventListener("input", (event) => {
+        state[key] = event.target.value;
+        this.changed();
+        this.#tellLaw();
+      });
+    }
     element("units").addEventListener("change", (event) => {
       state.units = event.target.value;
       this.changed();
@@ -73,7 +81,7 @@ export class Controls {
   #mendAxes() {
     const { state, catalogue } = this;
     const names = parametersOf(state, catalogue);
-    if (catalogue.mendAxes(state, names, highestOf(state.table))) state.point = null;
+    if (catalogue.mendAxes(state, names, state.highest)) state.point = null;
     this.build();
     this.changed();
   }
@@ -86,7 +94,8 @@ export class Controls {
       radio.checked = radio.value === state.control;
     }
     [element("show").value, element("law").value] = [state.show, state.law];
-    [element("units").value, element("law-table").value] = [state.units, state.table];
+    element("units").value = state.units;
+    for (const [id, key] of TABLE_INPUTS) element(id).value = state[key];
     const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
@@ -159,7 +168,7 @@ export class Controls {
     choice.append(...free.map(option));
     choice.value = axis.name;
     choice.addEventListener("change", () => {
-      state[key] = catalogue.axis(choice.value, state, other, highestOf(state.table));
+      state[key] = catalogue.axis(choice.value, state, other, state.highest);
       state.point = null;
       this.build();
       this.changed();
@@ -230,10 +239,14 @@ export class Controls {
       const point = [state.x, state.y].map(({ name }) => this.catalogue.value(state, name));
       const { point: text } = pointTexts(state, this.catalogue, point);
       const law = await this.source.law(text, this.laws.signal);
+      state.highest = Math.max(0, ...law.points.map(([, mu]) => mu));
       drawLaw(element("law-curve"), law);
       element("law-told").textContent = law.at ? this.#lawAt(law.at) : "";
+      element("law-remarks").textContent = law.remarks.map((remark) => `${remark}.`).join(" ");
     } catch (error) {
-      if (error.name !== "AbortError") element("law-told").textContent = this.words(error);
+      if (error.name === "AbortError") return;
+      element("law-told").textContent = this.words(error);
+      element("law-remarks").textContent = "";
     }
   }
 

@@ -14,7 +14,7 @@ import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./sc
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
 import { addressOf, leavesTable, stateOf } from "./state.js";
-import { lineOfMistake, parametersOf, pointTexts } from "./sweep.js";
+import { parametersOf, pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
 
 /** How long after the last change the address and the panel follow, in milliseconds. */
@@ -323,12 +323,9 @@ class Explorer {
     this.#settle();
   }
 
-  /** An error in words; of a mistake in a pasted table with its line. */
+  /** An error in words. */
   words(error) {
-    const { map, law, table } = this.state;
-    const line = !map && law === "table" ? lineOfMistake(error, table) : null;
-    const where = line === null ? "" : `line ${line} of the table: `;
-    return where + error.message + (error.help ? ` (${error.help})` : "");
+    return error.message + (error.help ? ` (${error.help})` : "");
   }
 
   /** Tells of an error of the chart or the map. */

@@ -1,7 +1,7 @@
 // The whole view as an address, short enough to be sent and readable: `#v=1&x=alpha_v,-1,0.2&…`.
 
 import { GAINS, SHOWN, UNITS } from "./catalogue.js";
-import { highestOf, parametersOf, tableOf } from "./sweep.js";
+import { parametersOf } from "./sweep.js";
 
 /** What the page shows when the address says nothing: the letter's Fig. 2(a). */
 const START = {
@@ -11,6 +11,10 @@ const START = {
   values: { mu_prime: -0.3 },
   law: "none",
   table: "",
+  columns: "",
+  speedUnit: "",
+  // The largest kinetic coefficient of the table, once it is read.
+  highest: 0,
   units: "",
   show: "n_unstable",
   point: null,
@@ -26,25 +30,10 @@ const LONGEST_TABLE = 1500;
 const number = (text) => (text.trim() === "" ? NaN : Number(text));
 const numbers = (text) => text.split(",").map(number);
 
-/** A table as speeds and coefficients, `v:mu,…`; one that cannot be read as it stands. */
-function tableText({ law, table }) {
-  if (law !== "table") return "";
-  try {
-    const { speeds, mu_k } = tableOf(table);
-    return speeds.map((v, k) => `${v}:${mu_k[k]}`).join(",");
-  } catch {
-    return table.trim();
-  }
-}
+const tableText = ({ law, table }) => (law === "table" ? table.trim() : "");
 
 /** Whether the friction law of a view is too long for its address. */
 export const leavesTable = (state) => !state.map && tableText(state).length > LONGEST_TABLE;
-
-/** A table from an address, in lines. */
-const tableFrom = (text) =>
-  /^[^,:\s]+:[^,:\s]+(,[^,:\s]+:[^,:\s]+)*$/.test(text)
-    ? text.replace(/,/g, "\n").replace(/:/g, ", ")
-    : text;
 
 /**
  * The fragment of the address of a view.
@@ -75,6 +64,8 @@ export function addressOf(state, parameters) {
     if (state.law !== "none") put("law", state.law);
     const table = tableText(state);
     if (table.length <= LONGEST_TABLE && table) put("table", table);
+    if (table && state.columns) put("columns", state.columns);
+    if (table && state.speedUnit) put("speed_unit", state.speedUnit);
     if (state.units) put("units", state.units);
     if (state.show !== START.show) put("show", state.show);
     if (state.point) put("at", state.point.join(","));
@@ -94,7 +85,7 @@ function axisOf(text) {
 /** Sets the axes of a view where there can be such ones. */
 function readAxes(state, said, catalogue, notes) {
   const known = parametersOf(state, catalogue);
-  const highest = highestOf(state.table);
+  const { highest } = state;
   for (const [key, beside, title] of [
     ["x", "y", "across"],
     ["y", "x", "upwards"],
@@ -175,7 +166,8 @@ export function stateOf(fragment, catalogue) {
     if (offered.includes(value)) state[key] = value;
     else notes.push(`"${value}" is no ${what} of the live chart`);
   }
-  if (get("table")) state.table = tableFrom(get("table"));
+  [state.columns, state.speedUnit] = [get("columns") ?? "", get("speed_unit") ?? ""];
+  if (get("table")) state.table = get("table");
   else if (state.law === "table") notes.push("its table was too long: paste it again");
   for (const name of parametersOf(state, catalogue)) {
     if (get(name) === null) continue;

@@ -15,56 +15,18 @@ export function parametersOf(state, catalogue) {
 
 const line = (name, value) => `${name} = ${value}\n`;
 
-/** The points of a friction law from two columns, v and μ_K, and the lines on which they stand. */
-export function tableOf(text) {
-  const table = { speeds: [], mu_k: [], lines: [] };
-  let begun = false;
-  for (const [k, row] of text
-    .replace(/^\ufeff/, "")
-    .split(/\r\n|\r|\n/)
-    .entries()) {
-    const said = row.trim();
-    if (!said || /^[#%]/.test(said)) continue;
-    // Words may stand above the columns, and nowhere else.
-    const isHead = !begun && /^["\p{L}]/u.test(said);
-    begun = true;
-    if (isHead) continue;
-    const fields = said.split(/\s*[,;]\s*|\s+/);
-    const pair = fields.map((field) => (field === "" ? NaN : Number(field)));
-    if (pair.length !== 2 || !pair.every(Number.isFinite)) {
-      throw new RangeError(
-        `line ${k + 1} of the table, "${said.slice(0, 40)}", is not two numbers, v and μ_K, ` +
-          "with decimal points",
-      );
-    }
-    table.speeds.push(pair[0]);
-    table.mu_k.push(pair[1]);
-    table.lines.push(k + 1);
-  }
-  if (table.lines.length < 2) throw new RangeError("the table needs two points or more: v, μ_K");
-  return table;
-}
+/** A text as TOML writes it. */
+const quoted = (text) => JSON.stringify(text).replace(/\x7f/g, "\\u007f");
 
-/** The largest μ_K of a table as far as it can be read. */
-export function highestOf(text) {
-  try {
-    return Math.max(...tableOf(text).mu_k);
-  } catch {
-    return 0;
-  }
-}
-
-/**
- * The line of a pasted table where slipmap finds a mistake; none where that is elsewhere.
- * @param {{span?: number[], text?: string}} error a place in what was asked, in bytes of UTF-8
- * @param {string} table
- */
-export function lineOfMistake({ span, text }, table) {
-  if (!span || text === undefined) return null;
-  const before = new TextDecoder().decode(new TextEncoder().encode(text).slice(0, span[0]));
-  const row = before.slice(before.lastIndexOf("\n") + 1);
-  if (!/^(speeds|mu_k) = \[/.test(row)) return null;
-  return tableOf(table).lines[row.split(",").length - 1] ?? null;
+/** The text of a measured friction law, and what is said of its columns. */
+function tableOf({ table, columns, speedUnit }) {
+  const said = [
+    ["text", table],
+    ["columns", columns],
+    ["speed_unit", speedUnit],
+  ];
+  const keys = said.filter(([key, value]) => key === "text" || value);
+  return `table = { ${keys.map(([key, value]) => `${key} = ${quoted(value)}`).join(", ")} }\n`;
 }
 
 /** The tables [friction] and [units]. */
@@ -73,10 +35,7 @@ function tablesOf(state, catalogue, names) {
   let text = "";
   if (state.law !== "none") {
     text += `\n[friction]\nlaw = "${state.law}"\n`;
-    if (state.law === "table") {
-      const { speeds, mu_k } = tableOf(state.table);
-      text += `speeds = [${speeds.join(", ")}]\nmu_k = [${mu_k.join(", ")}]\n`;
-    }
+    if (state.law === "table") text += tableOf(state);
     text += names
       .filter((name) => catalogue.about(name).group === "law")
       .map((name) => line(name, value(name)))

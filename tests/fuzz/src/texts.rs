@@ -1,6 +1,6 @@
 //! Texts: sweep files, case files, columns of a friction law, manifests.
 
-use slipmap::setting::friction_table::table_of_columns;
+use slipmap::setting::measured::{CurveOptions, Measured};
 use slipmap::setting::{CaseSpec, SweepSpec};
 use slipmap::store::tiles::Manifest;
 use slipmap::sweep::described::root::Provenance;
@@ -32,7 +32,8 @@ pub(super) fn case(data: &[u8]) {
         }
         Err(error) => check_error(&error, text),
     }
-    match table_of_columns(text) {
+    let measured = Measured::read(text, &CurveOptions::default());
+    match measured.and_then(|curve| curve.table()) {
         Ok(table) => assert_eq!(table.speeds().len(), table.mu_k().len()),
         Err(error) => check_error(&error, text),
     }
