@@ -17,9 +17,8 @@ const EVENTS_SHOWN: usize = 12;
 
 /// Writes the outcome of a motion, its numbers and its last events.
 pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
-    let summary = &trace.summary;
+    let (summary, units) = (&trace.summary, &spec.units);
     writeln!(out, "{}", verdict(summary, spec))?;
-    let units = &spec.units;
     for (name, value) in numbers(summary, units) {
         writeln!(out, "  {name:<16} {value}")?;
     }

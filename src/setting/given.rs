@@ -4,12 +4,14 @@
 use std::ops::Range;
 
 use super::actuator_limits::Excluding;
+use super::amount::units_of;
 use super::friction_table::GivenTable;
 use super::keys::FRICTION_TABLE;
 use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
+use super::units::Units;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
@@ -19,6 +21,7 @@ use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
 pub(super) struct GivenParameters {
+    units: Units,
     values: Vec<(Parameter, f64)>,
     law: Option<(LawKind, Range<usize>)>,
     table: GivenTable,
@@ -41,13 +44,26 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// The tables of a document, in its order. For an unknown name, one of the parameters that the
-    /// document `takes` is suggested.
+    /// The tables of a document, in its order, and its units. For an unknown name, one of the
+    /// parameters that the document `takes` is suggested.
     pub(super) fn of(document: &mut Document, takes: impl Fn(Parameter) -> bool) -> Self {
-        let mut given = Self::default();
+        let mut given = Self::within(units_of(document));
         let tables = ["fixed", "friction", "start"];
         document.each(&tables, |table| given.read(table, &takes));
         given
+    }
+
+    /// No parameters, of a file with these units.
+    pub(super) fn within(units: Units) -> Self {
+        Self {
+            units,
+            ..Self::default()
+        }
+    }
+
+    /// The units of the file.
+    pub(super) fn units(&self) -> &Units {
+        &self.units
     }
 
     /// Records the parameter of an axis.
@@ -125,7 +141,8 @@ impl GivenParameters {
 
     fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
         self.give(parameter, &entry.key_span)?;
-        self.put(parameter, entry.number()?, &entry.span)
+        let value = self.units.number(entry, parameter.dimension())?;
+        self.put(parameter, value, &entry.span)
     }
 
     /// Takes the value of a given parameter, which stands at `place`.
@@ -156,7 +173,7 @@ impl GivenParameters {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
-                None if self.table.read(&entry)? => {}
+                None if self.table.read(&entry, &self.units)? => {}
                 None => return Err(entry.unknown(&known)),
             }
         }

@@ -26,5 +26,6 @@ mod rig;
 mod shards;
 mod systems;
 mod traces;
+mod units;
 mod unlike;
 mod verify;
