@@ -19,12 +19,13 @@ use clap::ValueEnum;
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
 use super::parameter_values::{amount_of, in_units};
 use super::parameters::ParameterArgs;
 use super::run::{default_threads, parse_threads};
-use super::say::{self, Rows};
+use super::say::{self, ForPeople, Rows};
 use super::setting::SettingArgs;
 use super::signals::Signals;
 use super::text_output::{To, is_csv};
@@ -142,7 +143,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         return json::print(&question.inputs(&share), &share);
     }
-    tell(&share, &question.units, args.output.as_deref())
+    let (setting, units) = (&question.setting, &question.units);
+    inputs_line::print(&mut ForPeople::begin(), setting, units, &[])?;
+    tell(&share, units, args.output.as_deref())
 }
 
 impl Args {

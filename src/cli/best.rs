@@ -23,6 +23,7 @@ use super::best_answer::{Answer, BestAnswer, SystemBest};
 use super::best_text;
 use super::cell::alone;
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
 use super::parameter_values::{amount_of, parse_amount};
@@ -112,7 +113,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         json::print(&args.inputs(&told), &Answer::of(&told))?;
     } else {
-        best_text::print(&mut ForPeople::begin(), &told)?;
+        let mut out = ForPeople::begin();
+        let mut searched = vec![Parameter::Tau];
+        searched.extend(told.searched.known());
+        inputs_line::print(&mut out, setting, units, &searched)?;
+        best_text::print(&mut out, &told)?;
     }
     let Some(path) = &args.save else {
         return Ok(());

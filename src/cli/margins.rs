@@ -13,6 +13,7 @@ use crate::setting::{Parameter, Setting};
 use crate::text::{Shown, finite};
 
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema};
 use super::output::tell_dimensionless;
 use super::parameter_values::{amount_of, in_units};
@@ -69,6 +70,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         false => violations(Point::at(setting, wanted, &Stop::default())?.stability()),
     };
     let mut out = ForPeople::begin();
+    inputs_line::print(&mut out, setting, &asked.units, &[])?;
     Ok(print(
         &mut out,
         &margins,

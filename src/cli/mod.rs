@@ -17,6 +17,7 @@
 //! - `failure`: how a command fails
 //! - `info`: `slipmap info`
 //! - `info_trace`: `slipmap info` for a trace
+//! - `inputs_line`: the line of inputs with which answers about a block begin
 //! - `json`: the output of commands with `--json`
 //! - `kind`: the kind of a file of slipmap, for commands that take another kind
 //! - `limit_args`: the flags for a point of the limit of a short delay
@@ -73,6 +74,7 @@ mod export;
 mod failure;
 mod info;
 mod info_trace;
+mod inputs_line;
 mod json;
 mod kind;
 mod limit_args;

@@ -14,6 +14,7 @@ use crate::text::Shown;
 
 use super::asked::Asked;
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema};
 use super::output::check_picture;
 use super::parameter_values::{amount_of, in_units};
@@ -119,7 +120,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         };
         json::print(&inputs, &point)?;
     } else {
-        point_text::print(&mut ForPeople::begin(), &point, &asked)?;
+        let mut out = ForPeople::begin();
+        inputs_line::print(&mut out, &asked.setting, &asked.units, &[])?;
+        point_text::print(&mut out, &point, &asked)?;
     }
     let (Some(plot), Point::Block(listed)) = (&args.plot, &point) else {
         return Ok(());

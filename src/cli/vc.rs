@@ -18,6 +18,7 @@ use serde_json::Value;
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
 use super::output::warn_beyond_curve;
@@ -256,6 +257,9 @@ impl Args {
     ) -> Result<(), Failure> {
         warn_beyond_curve(found.beyond_curve(setting, units));
         let inputs = inputs(setting, units, protocol);
+        if !self.json {
+            inputs_line::print(&mut ForPeople::begin(), setting, units, &[Parameter::V0])?;
+        }
         print_found(self.json.then_some(&inputs), found, units)
     }
 

@@ -1,5 +1,5 @@
 //! Numbers with units, in flags and in files: what they are turned into, what is told of them, and
-//! which are refused.
+//! which are refused. The line of inputs with which answers begin.
 
 use serde_json::Value;
 
@@ -43,6 +43,37 @@ fn flags_with_units_are_numbers_of_the_si() {
     let [si, mm] = [json(&folder, &format!("point {RIG}")), mm].map(|of| of["abscissa"].as_f64());
     let (si, mm) = (si.unwrap(), mm.unwrap());
     assert!((si - mm).abs() < 1e-9 * si.abs(), "{si} {mm}");
+}
+
+#[test]
+fn an_answer_begins_with_its_inputs() {
+    let folder = Folder::new();
+    let line = |args: &str| {
+        let output = folder.run(&words(args));
+        expect(&output, 0, "inputs: ");
+        out(&output).lines().next().unwrap().to_owned()
+    };
+    let period = "free period 2 pi sqrt(mass/stiffness) = 0.0998674 s";
+    let rig = format!(
+        "inputs: alpha_v = 0 s-1, alpha_n = -5500 N m-1, tau = 0.005 s, v0 = 0.001 m s-1, \
+         mass = 2.4 kg, stiffness = 9500 N m-1, normal_load = 50 N, mu0 = 0.5, \
+         v_s = 0.05 m s-1, mu_s = 1, friction = weakening; {period}, \
+         friction force mu_k normal_load = 24.5098 N"
+    );
+    for command in ["point", "margins", "basin --starts 64"] {
+        assert_eq!(line(&format!("{command} {RIG}")), rig);
+    }
+    let motion = line(&format!("simulate {RIG} --x-dot0 0"));
+    assert!(motion.contains("x_dot0 = 0 m s-1"), "{motion}");
+    let vc = line(&format!("vc {RIG}"));
+    let force = format!("{period}, static friction force mu_s normal_load = 50 N");
+    assert!(vc.ends_with(&force) && !vc.contains("v0"), "{vc}");
+    let best = line("best --mu-prime=-0.3 --normal-load 2");
+    assert_eq!(
+        best,
+        "inputs: mu_prime = -0.3, normal_load = 2; free period 2 pi sqrt(mass/stiffness) = \
+         6.28319, friction force mu_k normal_load = 2"
+    );
 }
 
 #[test]
