@@ -3,9 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::setting::Setting;
+use crate::setting::amount::Amount;
+use crate::setting::quantity::Quantity;
 use crate::setting::units::Units;
+use crate::text::Shown;
 
+use super::failure::Failure;
 use super::json::Inputs;
+use super::parameter_values::quantity_in_units;
 
 /// A setting with the units of its numbers.
 pub(super) struct Asked {
@@ -36,6 +41,20 @@ impl Asked {
         let inputs = Inputs::default().and(flag, value).and("set", set);
         let others = setting.others().iter().filter(|p| wanted(p.name()));
         others.fold(inputs, |inputs, p| inputs.and(p.name(), setting.get(*p)))
+    }
+
+    /// The value of a quantity that a flag gives, in its range.
+    pub(super) fn value(&self, of: &Quantity, flag: &str, given: &Amount) -> Result<f64, Failure> {
+        let value = quantity_in_units(flag, given, of, &self.units)?;
+        match of.check(value) {
+            Ok(value) => Ok(value),
+            Err(_) if self.named.is_none() => Err(Failure::bad_input(format!(
+                "{flag} {} is outside its range: {}",
+                Shown(value),
+                of.allowed()
+            ))),
+            Err(why) => Err(Failure::bad_input(format!("{flag}: {why}"))),
+        }
     }
 
     /// What is stable or not, in words; `block` for the block.

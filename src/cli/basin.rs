@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::explore::basin::{BasinShare, Followed, no_law};
 use crate::report::numbers::{grouped, rounded, unit_behind};
 use crate::report::table::write_starts;
+use crate::setting::amount::Amount;
 use crate::setting::basin::{Basin, Over};
 use crate::setting::point_file::PointOf;
 use crate::setting::simulation::Simulation;
@@ -18,11 +19,13 @@ use clap::ValueEnum;
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
+use super::parameter_values::{amount_of, in_units};
 use super::parameters::ParameterArgs;
 use super::run::{default_threads, parse_threads};
-use super::say::{self, Rows};
+use super::say::{self, ForPeople, Rows};
 use super::setting::SettingArgs;
 use super::signals::Signals;
 use super::text_output::{To, is_csv};
@@ -56,20 +59,25 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", value_parser = parse_starts)]
     starts: Option<u32>,
     /// Smallest velocity of the block at t = 0
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    x_dot0_from: Option<f64>,
+    #[arg(long, value_name = "V", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::XDot0))]
+    x_dot0_from: Option<Amount>,
     /// Largest velocity of the block at t = 0
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    x_dot0_to: Option<f64>,
+    #[arg(long, value_name = "V", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::XDot0))]
+    x_dot0_to: Option<Amount>,
     /// Smallest elongation of the spring at t = 0 and before
-    #[arg(long, value_name = "A", allow_hyphen_values = true)]
-    a0_from: Option<f64>,
+    #[arg(long, value_name = "A", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::A0))]
+    a0_from: Option<Amount>,
     /// Largest elongation of the spring at t = 0 and before
-    #[arg(long, value_name = "A", allow_hyphen_values = true)]
-    a0_to: Option<f64>,
+    #[arg(long, value_name = "A", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::A0))]
+    a0_to: Option<Amount>,
     /// Time after switch-on until which motions are followed [default: 1000 √(M/κ)]
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    horizon: Option<f64>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::Tau))]
+    horizon: Option<Amount>,
     /// Write all starts with their outcomes, as text
     #[arg(short, long, value_name = "STARTS.csv")]
     output: Option<PathBuf>,
@@ -132,10 +140,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             write_starts(&followed, &question.units, out, stop)
         })?;
     }
-    match args.json {
-        true => json::print(&question.inputs(&share), &share),
-        false => tell(&share, &question.units, args.output.as_deref()),
+    if args.json {
+        return json::print(&question.inputs(&share), &share);
     }
+    let (setting, units) = (&question.setting, &question.units);
+    inputs_line::print(&mut ForPeople::begin(), setting, units, &[])?;
+    tell(&share, units, args.output.as_deref())
 }
 
 impl Args {
@@ -169,8 +179,9 @@ impl Args {
         if setting.law().is_none() {
             return Err(Failure::bad_input(no_law().message));
         }
-        self.put_starts(&mut basin, &setting)?;
-        if let Some(horizon) = self.horizon {
+        self.put_starts(&mut basin, &setting, &units)?;
+        if let Some(horizon) = &self.horizon {
+            let horizon = in_units("--horizon", horizon, &units)?;
             if !(1e-12..=1e12).contains(&horizon) {
                 let message = format!("--horizon {} is outside its range", Shown(horizon));
                 let help = "a time greater than 0, between 1e-12 and 1e12";
@@ -187,7 +198,12 @@ impl Args {
     }
 
     /// Sets what the flags say about the starts.
-    fn put_starts(&self, basin: &mut Basin, setting: &Setting) -> Result<(), Failure> {
+    fn put_starts(
+        &self,
+        basin: &mut Basin,
+        setting: &Setting,
+        units: &Units,
+    ) -> Result<(), Failure> {
         if let Some(over) = self.over {
             basin.over = match over {
                 OverName::State => Over::State,
@@ -196,10 +212,10 @@ impl Args {
         }
         basin.starts = self.starts.unwrap_or(basin.starts);
         let ends = [
-            ("--x-dot0-from", self.x_dot0_from),
-            ("--x-dot0-to", self.x_dot0_to),
-            ("--a0-from", self.a0_from),
-            ("--a0-to", self.a0_to),
+            ("--x-dot0-from", &self.x_dot0_from),
+            ("--x-dot0-to", &self.x_dot0_to),
+            ("--a0-from", &self.a0_from),
+            ("--a0-to", &self.a0_to),
         ];
         if basin.over == Over::Phase {
             (basin.x_dot0, basin.a0) = (None, None);
@@ -211,6 +227,14 @@ impl Args {
                 None => Ok(()),
             };
         }
+        let value = |(flag, end): (&'static str, &Option<Amount>)| {
+            let value = end.as_ref().map(|end| in_units(flag, end, units));
+            Ok((flag, value.transpose()?))
+        };
+        let ends: Vec<_> = ends
+            .into_iter()
+            .map(value)
+            .collect::<Result<_, Failure>>()?;
         let velocities = basin.velocities(setting)?;
         let elongations = basin.elongations(setting)?;
         basin.x_dot0 = Some(range(Parameter::XDot0, &ends[..2], velocities)?);

@@ -8,6 +8,7 @@ use crate::explore::stability::Wanted;
 use crate::explore::vc::CriticalVelocity;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::setting::amount::Amount;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::Protocol;
 use crate::setting::simulation::NOT_IN_MOTIONS;
@@ -22,8 +23,10 @@ use super::best_answer::{Answer, BestAnswer, SystemBest};
 use super::best_text;
 use super::cell::alone;
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
+use super::parameter_values::{amount_of, parse_amount};
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say::{self, ForPeople};
@@ -54,23 +57,27 @@ pub(super) struct Args {
         long,
         visible_alias = "search-from",
         allow_hyphen_values = true,
-        value_name = "A"
+        value_name = "A",
+        value_parser = parse_amount
     )]
-    alpha_from: Option<f64>,
+    alpha_from: Option<Amount>,
     /// Largest gain to search, or largest value of --search
     #[arg(
         long,
         visible_alias = "search-to",
         allow_hyphen_values = true,
-        value_name = "A"
+        value_name = "A",
+        value_parser = parse_amount
     )]
-    alpha_to: Option<f64>,
+    alpha_to: Option<Amount>,
     /// Shortest delay to search
-    #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    tau_from: Option<f64>,
+    #[arg(long, allow_hyphen_values = true, value_name = "T",
+          value_parser = amount_of(Parameter::Tau))]
+    tau_from: Option<Amount>,
     /// Longest delay to search
-    #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    tau_to: Option<f64>,
+    #[arg(long, allow_hyphen_values = true, value_name = "T",
+          value_parser = amount_of(Parameter::Tau))]
+    tau_to: Option<Amount>,
     /// Also find the setting of a block, whatever its feedback has, whose slowest decay is fastest
     /// when gain, delay and μ′ may all be off by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
@@ -106,7 +113,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         json::print(&args.inputs(&told), &Answer::of(&told))?;
     } else {
-        best_text::print(&mut ForPeople::begin(), &told)?;
+        let mut out = ForPeople::begin();
+        let mut searched = vec![Parameter::Tau];
+        searched.extend(told.searched.known());
+        inputs_line::print(&mut out, setting, units, &searched)?;
+        best_text::print(&mut out, &told)?;
     }
     let Some(path) = &args.save else {
         return Ok(());
@@ -165,6 +176,7 @@ impl Args {
     fn asked_of_system(&self) -> Result<(Asked, Quantity), Failure> {
         let flags = self.parameters.any_but(&OTHERS);
         alone("--system", flags || self.control.is_some())?;
+        self.parameters.refuse_units()?;
         let robust = "leave it out: gain, delay and mu_prime may be off, and mu_prime is of a \
             block on its spring";
         for (flag, given, help) in [
@@ -231,34 +243,26 @@ impl Args {
         searched: &Quantity,
         default: &Ranges,
     ) -> Result<Ranges, Failure> {
-        let check = |of: &Quantity, flag: &str, value: f64| {
-            let told = |why: String| Failure::bad_input(format!("{flag}: {why}"));
-            let checked = match of {
-                Quantity::Own(own) => own.check(value).map_err(told),
-                Quantity::Known(parameter) => {
-                    parameter.check(value).map_err(|e| match asked.named {
-                        None => Failure::out_of_range(flag, &e),
-                        Some(_) => told(e.to_string()),
-                    })
-                }
-            };
-            checked.map(drop)
+        let value = |of: &Quantity, flag: &'static str, end: &Option<Amount>| {
+            let value = end.as_ref().map(|end| asked.value(of, flag, end));
+            Ok((flag, value.transpose()?))
         };
         let [from, to] = match asked.named {
             None => ["--alpha-from", "--alpha-to"],
             Some(_) => ["--search-from", "--search-to"],
         };
+        let tau = Parameter::Tau.into();
+        let gain = [
+            value(searched, from, &self.alpha_from),
+            value(searched, to, &self.alpha_to),
+        ];
+        let tau = [
+            value(&tau, "--tau-from", &self.tau_from),
+            value(&tau, "--tau-to", &self.tau_to),
+        ];
         Ok(Ranges {
-            gain: range(
-                [(from, self.alpha_from), (to, self.alpha_to)],
-                default.gain,
-                |flag, value| check(searched, flag, value),
-            )?,
-            tau: range(
-                [("--tau-from", self.tau_from), ("--tau-to", self.tau_to)],
-                default.tau,
-                |flag, value| check(&Parameter::Tau.into(), flag, value),
-            )?,
+            gain: range(gain, default.gain)?,
+            tau: range(tau, default.tau)?,
         })
     }
 
@@ -325,18 +329,12 @@ impl Args {
     }
 }
 
-/// The range that two flags give, with the ends of `default` where they give none. `check` refuses
-/// the value of a flag.
-fn range(
-    [(from_flag, from), (to_flag, to)]: [(&str, Option<f64>); 2],
-    default: (f64, f64),
-    check: impl Fn(&str, f64) -> Result<(), Failure>,
-) -> Result<(f64, f64), Failure> {
-    for (flag, value) in [(from_flag, from), (to_flag, to)] {
-        if let Some(value) = value {
-            check(flag, value)?;
-        }
-    }
+/// A flag, and the value that it gives.
+type Given = Result<(&'static str, Option<f64>), Failure>;
+
+/// The range that two flags give, with the ends of `default` where they give none.
+fn range([from, to]: [Given; 2], default: (f64, f64)) -> Result<(f64, f64), Failure> {
+    let ((from_flag, from), (to_flag, to)) = (from?, to?);
     let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));
     if low <= high {
         return Ok((low, high));

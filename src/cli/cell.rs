@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 
 use crate::maps::look::as_text::CellTexts;
 use crate::report::numbers::unit_behind;
+use crate::setting::amount::Amount;
 use crate::setting::axis::{Axis, nearest};
 use crate::setting::basin::Basin;
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::quantity::Quantity;
 use crate::setting::simulation::Simulation;
+use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::store::MapFile;
 use crate::store::tiles::Survey;
@@ -21,6 +23,7 @@ use crate::text::nearest::did_you_mean;
 use super::failure::Failure;
 use super::open::tell_partial;
 use super::output::warn_beyond_curve;
+use super::parameter_values::{on_one_line, quantity_in_units};
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -40,7 +43,7 @@ pub(super) struct CellArgs {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct At {
     name: String,
-    pub value: f64,
+    value: Amount,
 }
 
 /// Reads a name and a value. Whether the axis exists depends on the map.
@@ -48,7 +51,10 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
     let (name, value) = text
         .split_once('=')
         .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
-    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    let value = Amount::read(value).transpose();
+    let value = value
+        .map_err(|error| on_one_line(&error))?
+        .filter(Amount::is_finite);
     Ok(At {
         name: name.trim().replace('-', "_"),
         value: value.ok_or("the value after = must be a finite number")?,
@@ -56,6 +62,11 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
 }
 
 impl At {
+    /// The value on the axis `of`, in the units of the map.
+    pub(super) fn value(&self, of: &Quantity, units: &Units) -> Result<f64, Failure> {
+        quantity_in_units(&format!("--at {}", self.name), &self.value, of, units)
+    }
+
     /// The number of the named axis among `axes`, those of a map.
     pub(super) fn axis(&self, axes: &[&Quantity]) -> Result<usize, Failure> {
         let names = || axes.iter().map(|axis| axis.name());
@@ -73,7 +84,11 @@ impl At {
 
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}={}", self.name, Shown(self.value))
+        let text = format!("{}={}", self.name, self.value);
+        match text.contains(' ') {
+            true => write!(f, "\"{text}\""),
+            false => f.write_str(&text),
+        }
     }
 }
 
@@ -121,7 +136,7 @@ impl CellArgs {
         let mut index = Vec::new();
         let mut there = Vec::new();
         for axis in &plan.spec.axes {
-            let place = self.place(axis)?;
+            let place = self.place(axis, &plan.spec.units)?;
             let unit = unit_behind(&axis.parameter.unit(&plan.spec.units));
             let (name, value) = (axis.parameter.name(), Shown(axis.values[place]));
             there.push(format!("{name} = {value}{unit}"));
@@ -174,12 +189,12 @@ impl CellArgs {
     }
 
     /// The place on an axis of the value nearest to the given one.
-    fn place(&self, axis: &Axis) -> Result<usize, Failure> {
+    fn place(&self, axis: &Axis, units: &Units) -> Result<usize, Failure> {
         let name = axis.parameter.name();
         let given = self.at.iter().filter(|at| at.name == name);
-        let value = match given.map(|at| at.value).collect::<Vec<_>>()[..] {
+        let value = match given.collect::<Vec<_>>()[..] {
             [] if axis.len() == 1 => return Ok(0),
-            [value] => value,
+            [at] => at.value(&axis.parameter, units)?,
             [] => {
                 let (low, high) = axis.range();
                 let [low, high, first] = [low, high, axis.values[0]].map(Shown);
@@ -282,7 +297,8 @@ mod tests {
     fn places_on_axes_are_read() {
         for (text, value) in [("mu_prime=-0.3", -0.3), ("mu-prime = 1e-2", 0.01)] {
             let at = parse_at(text).unwrap();
-            assert_eq!((at.name.as_str(), at.value), ("mu_prime", value));
+            let found = at.value(&Parameter::MuPrime.into(), &Units::default());
+            assert!(at.name == "mu_prime" && matches!(found, Ok(of) if of == value));
             let axes = [Parameter::Tau, Parameter::MuPrime].map(Quantity::from);
             let axes = axes.each_ref();
             assert!(matches!(at.axis(&axes), Ok(1)));

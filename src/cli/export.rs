@@ -175,7 +175,8 @@ fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
     for at in &args.at {
         let axis = at.axis(&axes)?;
         let parameter = axes[axis];
-        let place = place_on(parameter, &map.axes()[axis].values, at.value)?;
+        let value = at.value(parameter, &map.units())?;
+        let place = place_on(parameter, &map.axes()[axis].values, value)?;
         if held[axis].replace(place).is_some() {
             let message = format!("--at {} is given twice", parameter.name());
             return Err(Failure::bad_input(message));

@@ -2,6 +2,7 @@
 
 use crate::setting::Parameter;
 use crate::setting::parameter::Group;
+use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use super::parameter_values::Values;
@@ -38,7 +39,7 @@ impl Args for LimitArgs {
 
 impl FromArgMatches for LimitArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self(Values::of(matches, Self::of_limit)))
+        Values::of(matches, Self::of_limit, &Units::default()).map(Self)
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

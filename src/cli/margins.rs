@@ -7,13 +7,16 @@ use crate::explore::point::Point;
 use crate::explore::stability::{Stability, Wanted};
 use crate::model::stop::Stop;
 use crate::report::numbers::{counted, rounded, unit_behind};
+use crate::setting::amount::Amount;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::{Shown, finite};
 
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema};
 use super::output::tell_dimensionless;
+use super::parameter_values::{amount_of, in_units};
 use super::point_args::PointArgs;
 use super::say::ForPeople;
 
@@ -25,19 +28,16 @@ pub(super) struct Args {
     #[command(flatten)]
     point: PointArgs,
     /// The decay rate that all roots have to have, 1/time; 0 asks for stability
-    #[arg(long, value_name = "RATE", default_value_t = 0.0, allow_hyphen_values = true,
-          value_parser = parse_decay)]
-    decay: f64,
+    #[arg(long, value_name = "RATE", default_value = "0", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::AlphaV))]
+    decay: Amount,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
 }
 
-fn parse_decay(text: &str) -> Result<f64, String> {
-    let rate = text.trim().parse().ok();
-    let rate = rate.filter(|rate: &f64| (0.0..=1e12).contains(rate));
-    rate.ok_or_else(|| "expected a decay rate, from 0 to 1e12".to_owned())
-}
+/// The largest decay rate that can be asked for.
+const LARGEST_DECAY: f64 = 1e12;
 
 /// What its JSON looks like.
 pub(super) fn described() -> AnswerSchema {
@@ -47,7 +47,8 @@ pub(super) fn described() -> AnswerSchema {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let asked = args.point.read()?;
     let setting = &asked.setting;
-    let Some(margins) = Margins::at(setting, args.decay, &Stop::default())? else {
+    let decay = args.decay(&asked.units)?;
+    let Some(margins) = Margins::at(setting, decay, &Stop::default())? else {
         let law = setting.law().map_or("", |law| law.name());
         return Err(Failure::bad_input_with_help(
             format!(
@@ -57,18 +58,19 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         ));
     };
     if args.json {
-        let inputs = asked.inputs(|_| true).and("decay", args.decay);
+        let inputs = asked.inputs(|_| true).and("decay", decay);
         return json::print(&inputs, &margins);
     }
     let wanted = Wanted {
         roots: 1,
-        line: Some(-args.decay).filter(|line| *line < 0.0),
+        line: Some(-decay).filter(|line| *line < 0.0),
     };
     let violations = match margins.decays {
         true => None,
         false => violations(Point::at(setting, wanted, &Stop::default())?.stability()),
     };
     let mut out = ForPeople::begin();
+    inputs_line::print(&mut out, setting, &asked.units, &[])?;
     Ok(print(
         &mut out,
         &margins,
@@ -76,6 +78,21 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         setting,
         &asked.units,
     )?)
+}
+
+impl Args {
+    /// The required decay rate in `units`.
+    fn decay(&self, units: &Units) -> Result<f64, Failure> {
+        let decay = in_units("--decay", &self.decay, units)?;
+        if (0.0..=LARGEST_DECAY).contains(&decay) {
+            return Ok(decay);
+        }
+        let message = format!("--decay {} is outside its range", Shown(decay));
+        Err(Failure::bad_input_with_help(
+            message,
+            "a decay rate, from 0 to 1e12",
+        ))
+    }
 }
 
 /// The number of roots on the wrong side: of the line, where one is asked for, else of the

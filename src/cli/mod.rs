@@ -17,6 +17,7 @@
 //! - `failure`: how a command fails
 //! - `info`: `slipmap info`
 //! - `info_trace`: `slipmap info` for a trace
+//! - `inputs_line`: the line of inputs with which answers about a block begin
 //! - `json`: the output of commands with `--json`
 //! - `kind`: the kind of a file of slipmap, for commands that take another kind
 //! - `limit_args`: the flags for a point of the limit of a short delay
@@ -27,7 +28,7 @@
 //! - `open`: opens a map for a command that reads it
 //! - `open_files`: raises the limit of open files: a merge has one of every shard open
 //! - `output`: common to all commands that write a file
-//! - `parameter_values`: the values that flags give to parameters
+//! - `parameter_values`: the numbers that flags give, with their units, and values of parameters
 //! - `parameters`: the flags for a point of parameter space, with the same words as sweep files
 //! - `plan`: `slipmap plan`
 //! - `plan_case`: `slipmap plan` for a case file
@@ -74,6 +75,7 @@ mod export;
 mod failure;
 mod info;
 mod info_trace;
+mod inputs_line;
 mod json;
 mod kind;
 mod limit_args;
@@ -116,12 +118,15 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use address_space::Refusing;
 use colours::Colours;
 use failure::Failure;
 use json::AnswerSchema;
+
+use crate::setting::unit::Unit;
 
 /// The order of flags that every command has: behind all others.
 const LAST: usize = 1000;
@@ -220,6 +225,20 @@ commands! {
     Reference(reference),
 }
 
+/// An error about arguments, with a tip where a blank divides a number from its unit.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    let divided = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(word)) => Unit::read(word).is_ok(),
+        _ => false,
+    };
+    if divided && error.kind() == ErrorKind::UnknownArgument {
+        let tip = "a number and its unit stand together, as in 3mm, or in quotes, as in \"3 mm\"";
+        let tips = ContextValue::StyledStrs(vec![tip.into()]);
+        error.insert(ContextKind::Suggested, tips);
+    }
+    error
+}
+
 /// Prints help, or what is wrong with the arguments. File names in them may contain control
 /// characters, which are spelled out and not sent to the terminal.
 fn say_usage(error: &clap::Error) -> ExitCode {
@@ -246,7 +265,7 @@ pub fn main() -> ExitCode {
             say::set_quiet(cli.quiet);
             cli.command
         }
-        Err(error) => return say_usage(&error),
+        Err(error) => return say_usage(&with_tip(error)),
     };
     // This signal is caught and ignored: exceeding a limit on file sizes then makes the write fail
     // instead of ending the process. If it cannot be caught, the process ends.

@@ -10,6 +10,7 @@ use crate::slip::motion::MOST_KEPT;
 use crate::slip::outcome::{Outcome, Summary};
 use crate::text::Shown;
 
+use super::inputs_line;
 use super::output::tell_dimensionless;
 
 /// Number of events printed for people, the last ones; the JSON output and the trace have all.
@@ -17,9 +18,9 @@ const EVENTS_SHOWN: usize = 12;
 
 /// Writes the outcome of a motion, its numbers and its last events.
 pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
-    let summary = &trace.summary;
+    let (summary, units) = (&trace.summary, &spec.units);
+    inputs_line::print(out, &spec.setting, units, &[])?;
     writeln!(out, "{}", verdict(summary, spec))?;
-    let units = &spec.units;
     for (name, value) in numbers(summary, units) {
         writeln!(out, "  {name:<16} {value}")?;
     }

@@ -106,6 +106,13 @@ pub(super) fn tell_dimensionless(out: &mut impl Write, units: &Units) -> std::io
     }
 }
 
+/// Tells once that units are assumed, because some numbers have one.
+pub(super) fn tell_assumed_units(units: &Units) {
+    if let Some(remark) = units.remark() {
+        say::note(remark);
+    }
+}
+
 /// Warns once if a delay is given that has no effect.
 pub(super) fn warn_of_idle_delay(idle: bool) {
     if idle {

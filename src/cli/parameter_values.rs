@@ -1,8 +1,15 @@
-//! The values that flags give to parameters.
+//! The numbers that flags give, with their units, and the values of parameters.
 
 use crate::setting::Parameter;
+use crate::setting::amount::Amount;
 use crate::setting::parameter::Group;
+use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
+use crate::text::SpecError;
+use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches};
+
+use super::failure::Failure;
 
 /// The values that flags give to parameters; each parameter has a flag in its row.
 #[derive(Debug, Clone)]
@@ -24,20 +31,27 @@ impl Values {
             Some(match parameter {
                 // The number of a coefficient, or the expression of a formula.
                 Parameter::MuK => arg,
-                _ => arg.value_parser(parse_number),
+                _ => arg.value_parser(amount_of(parameter)),
             })
         })
     }
 
-    pub(super) fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
-        Self(Box::new(Parameter::ALL.map(|parameter| {
-            let asked = wanted(parameter.group()) && parameter.flag().is_some();
-            let value = || match parameter {
-                Parameter::MuK => Self::text(matches)?.trim().parse().ok(),
-                _ => matches.get_one::<f64>(parameter.name()).copied(),
-            };
-            asked.then(value).flatten()
-        })))
+    /// The values in `units`.
+    pub(super) fn of(
+        matches: &ArgMatches,
+        wanted: impl Fn(Group) -> bool,
+        units: &Units,
+    ) -> Result<Self, clap::Error> {
+        let mut values = Self(Box::new([None; Parameter::ALL.len()]));
+        for (parameter, amount) in amounts(matches, wanted) {
+            let flag = parameter.name().replace('_', "-");
+            let value = amount.value(units).map_err(|error| {
+                let text = format!("--{flag} {amount}: {}\n", on_one_line(&error));
+                clap::Error::raw(ErrorKind::ValueValidation, text)
+            })?;
+            values.0[parameter as usize] = Some(value);
+        }
+        Ok(values)
     }
 
     /// The text of the flag of [`Parameter::MuK`].
@@ -58,8 +72,124 @@ impl Values {
 /// Why a text is no number.
 pub(super) const NO_NUMBER: &str = "expected a number, such as -0.3 or 1e-2";
 
-/// Reads the number of a flag; its range is checked with its parameter.
-pub(super) fn parse_number(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok();
-    number.ok_or_else(|| NO_NUMBER.to_owned())
+/// The numbers of the flags of the parameters in `wanted` groups.
+pub(super) fn amounts(
+    matches: &ArgMatches,
+    wanted: impl Fn(Group) -> bool,
+) -> impl Iterator<Item = (Parameter, Amount)> {
+    let asked = Parameter::ALL
+        .into_iter()
+        .filter(move |p| wanted(p.group()) && p.flag().is_some());
+    asked.filter_map(|p| {
+        let amount = match p {
+            // What is no number is the expression of a formula.
+            Parameter::MuK => parse_amount(Values::text(matches)?).ok(),
+            _ => matches.get_one::<Amount>(p.name()).cloned(),
+        };
+        Some((p, amount?))
+    })
+}
+
+/// The units of the numbers of all flags: those `declared`, or the SI where none are and some
+/// number has a unit.
+pub(super) fn units_of(matches: &ArgMatches, declared: Option<&Units>) -> Units {
+    let any = |id: &str| {
+        let amounts = matches.try_get_many::<Amount>(id).ok().flatten();
+        let times = matches.try_get_many::<TimeOr>(id).ok().flatten();
+        let times = times.into_iter().flatten().filter_map(TimeOr::time);
+        let mut all = amounts.into_iter().flatten().chain(times);
+        all.any(Amount::needs_units)
+    };
+    match declared {
+        Some(units) => units.clone(),
+        None if matches.ids().any(|id| any(id.as_str())) => Units::assumed_si(),
+        None => Units::default(),
+    }
+}
+
+/// A reader of the number of a flag with the unit of a parameter; the range is checked later.
+pub(super) fn amount_of(
+    parameter: Parameter,
+) -> impl Fn(&str) -> Result<Amount, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let amount = parse_amount(text)?;
+        let checked = amount.check(parameter.dimension());
+        checked
+            .map(|()| amount)
+            .map_err(|error| on_one_line(&error))
+    }
+}
+
+/// Reads the number of a flag, whatever its unit.
+pub(super) fn parse_amount(text: &str) -> Result<Amount, String> {
+    let amount = Amount::read(text)
+        .ok_or("expected a number, such as -0.3 or 1e-2, or one with its unit, such as 2.5mm/s")?;
+    amount.map_err(|error| on_one_line(&error))
+}
+
+/// A time, or a word in its place.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum TimeOr {
+    /// The word.
+    Word,
+    /// The time.
+    Time(Amount),
+}
+
+impl TimeOr {
+    /// A reader of a time or of `word`.
+    pub(super) fn word(
+        word: &'static str,
+    ) -> impl Fn(&str) -> Result<Self, String> + Clone + Send + Sync + 'static {
+        move |text| match text.trim() == word {
+            true => Ok(Self::Word),
+            false => amount_of(Parameter::Tau)(text)
+                .map(Self::Time)
+                .map_err(|error| format!("{error}, or {word}")),
+        }
+    }
+
+    pub(super) fn time(&self) -> Option<&Amount> {
+        match self {
+            Self::Word => None,
+            Self::Time(time) => Some(time),
+        }
+    }
+}
+
+/// The number of `flag` in `units`.
+pub(super) fn in_units(flag: &str, amount: &Amount, units: &Units) -> Result<f64, Failure> {
+    amount
+        .value(units)
+        .map_err(|error| refused(flag, amount, error))
+}
+
+/// The number that `flag` gives to a quantity, in `units`; its unit is checked.
+pub(super) fn quantity_in_units(
+    flag: &str,
+    amount: &Amount,
+    of: &Quantity,
+    units: &Units,
+) -> Result<f64, Failure> {
+    let dimension = of.known().map_or([0; 3], Parameter::dimension);
+    let fits = amount.check(dimension);
+    fits.map_err(|error| refused(flag, amount, error))?;
+    in_units(flag, amount, units)
+}
+
+/// The failure for a number of `flag` whose unit does not fit.
+fn refused(flag: &str, amount: &Amount, error: SpecError) -> Failure {
+    let message = format!("{flag} {amount}: {}", error.message);
+    match error.help {
+        Some(help) => Failure::bad_input_with_help(message, help),
+        None => Failure::bad_input(message),
+    }
+}
+
+/// An error with its advice, on one line.
+pub(super) fn on_one_line(error: &SpecError) -> String {
+    match &error.help {
+        Some(help) => format!("{error}; {help}"),
+        None => error.to_string(),
+    }
 }

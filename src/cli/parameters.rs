@@ -20,8 +20,8 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
-use super::output::{warn_beyond_curve, warn_of_idle_delay};
-use super::parameter_values::{NO_NUMBER, Values};
+use super::output::{tell_assumed_units, warn_beyond_curve, warn_of_idle_delay};
+use super::parameter_values::{NO_NUMBER, Values, units_of};
 use super::say;
 use super::sets::SetArgs;
 use super::sweep_file::read_table;
@@ -44,7 +44,7 @@ struct LawArgs {
     #[arg(long, value_name = "UNIT", value_parser = SpeedUnit::read, requires = "table")]
     speed_unit: Option<SpeedUnit>,
     /// Units of the numbers given and told: SI, or those of force, length and time, as in N,mm,s
-    /// [default: dimensionless]
+    /// [default: SI if a number has a unit, as in 2.4kg or 3mm/s, else dimensionless]
     #[arg(long, value_name = "UNITS", value_parser = Units::read)]
     units: Option<Units>,
     #[command(flatten)]
@@ -87,6 +87,8 @@ pub(super) struct ParameterArgs<A: Asks = OfSliding> {
     /// The text of --mu-k.
     mu_k: Option<String>,
     law: LawArgs,
+    /// The units of all numbers.
+    units: Units,
     asks: PhantomData<A>,
 }
 
@@ -134,8 +136,9 @@ impl<A: Asks> Args for ParameterArgs<A> {
 impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let wanted = |group| Self::without_law(group) || Self::of_law(group);
-        let mut values = Values::of(matches, wanted);
         let law = LawArgs::from_arg_matches(matches)?;
+        let units = units_of(matches, law.units.as_ref());
+        let mut values = Values::of(matches, wanted, &units)?;
         if law.friction.as_deref() == Some(LawKind::FORMULA) {
             values.forget(Parameter::MuK);
         }
@@ -143,6 +146,7 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
             values,
             mu_k: Values::text(matches).cloned(),
             law,
+            units,
             asks: PhantomData,
         })
     }
@@ -330,7 +334,19 @@ impl<A: Asks> ParameterArgs<A> {
 
     /// The units of all numbers.
     pub(super) fn units(&self) -> Units {
-        self.law.units.clone().unwrap_or_default()
+        self.units.clone()
+    }
+
+    /// Refuses numbers with units, for systems from files: their own parameters have none that are
+    /// known here.
+    pub(super) fn refuse_units(&self) -> Result<(), Failure> {
+        match self.units.assumed {
+            false => Ok(()),
+            true => Err(Failure::bad_input_with_help(
+                "a number has a unit, and units of a system from a file are not known here",
+                "give all numbers in the units that the system's file means",
+            )),
+        }
     }
 
     /// Whether any flag is given besides those of `these` parameters.
@@ -379,6 +395,7 @@ impl<A: Asks> ParameterArgs<A> {
                 ));
             }
         }
+        tell_assumed_units(&self.units);
         let without = |p| left_out == Some(p) || unneeded.is_some_and(|(u, _)| u == p);
         let there = |p| searched.contains(&p) || without(p) || self.given(p).is_some();
         Setting::check_given(law.as_ref(), there).map_err(|e| {

@@ -159,11 +159,14 @@ fn shown_of(
 ) -> Result<PictureOptions, Failure> {
     let axes: Vec<&Quantity> = map.axes().iter().map(|axis| &axis.parameter).collect();
     let at = args.at.iter();
-    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis].clone(), at.value)));
+    let at = at.map(|at| {
+        let of = axes[at.axis(&axes)?];
+        Ok((of.clone(), at.value(of, &map.units())?))
+    });
     let field = args.field.as_deref().map(|name| held_field(map, name));
     Ok(PictureOptions {
         field: field.transpose()?,
-        at: at.collect::<Result<_, _>>()?,
+        at: at.collect::<Result<_, Failure>>()?,
         ..options
     })
 }

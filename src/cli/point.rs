@@ -7,11 +7,17 @@ use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::explore::stability::Wanted;
 use crate::model::stop::Stop;
 use crate::report::picture::{self, Picture, PointPicture};
+use crate::setting::Parameter;
+use crate::setting::amount::Amount;
+use crate::setting::units::Units;
+use crate::text::Shown;
 
 use super::asked::Asked;
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema};
 use super::output::check_picture;
+use super::parameter_values::{amount_of, in_units};
 use super::point_args::PointArgs;
 use super::point_text;
 use super::say::{self, ForPeople};
@@ -35,8 +41,9 @@ pub(super) struct Args {
           value_parser = parse_roots)]
     roots: u8,
     /// Count the roots with a real part greater than SIGMA, in 1/time
-    #[arg(long, value_name = "SIGMA", allow_hyphen_values = true, value_parser = parse_line)]
-    line: Option<f64>,
+    #[arg(long, value_name = "SIGMA", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::AlphaV))]
+    line: Option<Amount>,
     /// Draw the roots in the complex plane and the stable delays, as .png, .svg or .pdf
     #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
@@ -50,21 +57,19 @@ fn parse_roots(text: &str) -> Result<u8, String> {
     count.ok_or_else(|| "expected a whole number from 1 to 64".to_owned())
 }
 
-fn parse_line(text: &str) -> Result<f64, String> {
-    let line = text
-        .trim()
-        .parse()
-        .ok()
-        .filter(|line: &f64| line.abs() <= LARGEST_LINE);
-    line.ok_or_else(|| format!("expected a number of size at most {LARGEST_LINE:e}"))
-}
-
 impl Args {
-    fn wanted(&self, roots: u8) -> Wanted {
-        Wanted {
-            roots,
-            line: self.line,
+    /// The real part of the line to the right of which roots are counted.
+    fn line(&self, units: &Units) -> Result<Option<f64>, Failure> {
+        let Some(line) = &self.line else {
+            return Ok(None);
+        };
+        let line = in_units("--line", line, units)?;
+        if line.abs() <= LARGEST_LINE {
+            return Ok(Some(line));
         }
+        let message = format!("--line {} is outside its range", Shown(line));
+        let help = format!("a number of size at most {LARGEST_LINE:e}");
+        Err(Failure::bad_input_with_help(message, help))
     }
 
     /// The setting, with a picture that it can have.
@@ -102,20 +107,23 @@ pub(super) fn described() -> AnswerSchema {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let asked = args.asked()?;
-    let point = Point::at(&asked.setting, args.wanted(args.roots), &Stop::default())?;
+    let (roots, line) = (args.roots, args.line(&asked.units)?);
+    let point = Point::at(&asked.setting, Wanted { roots, line }, &Stop::default())?;
     let spectrum = &point.stability().spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
     }
     if args.json {
         let inputs = asked.inputs(|_| true).and("roots", args.roots);
-        let inputs = match args.line {
+        let inputs = match line {
             Some(line) => inputs.and("line", line),
             None => inputs,
         };
         json::print(&inputs, &point)?;
     } else {
-        point_text::print(&mut ForPeople::begin(), &point, &asked)?;
+        let mut out = ForPeople::begin();
+        inputs_line::print(&mut out, &asked.setting, &asked.units, &[])?;
+        point_text::print(&mut out, &point, &asked)?;
     }
     let (Some(plot), Point::Block(listed)) = (&args.plot, &point) else {
         return Ok(());

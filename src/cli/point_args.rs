@@ -52,7 +52,8 @@ impl PointArgs {
     /// parameters `but`.
     pub(super) fn check_alone(&self, with: &str, but: &[Parameter]) -> Result<(), Failure> {
         let others = self.cell.map.is_some() || self.file.is_given();
-        alone(with, others || self.parameters.any_but(but))
+        alone(with, others || self.parameters.any_but(but))?;
+        self.parameters.refuse_units()
     }
 
     /// The setting of the block, from a file, a map or flags.

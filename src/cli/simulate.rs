@@ -174,7 +174,7 @@ impl Args {
         let (from, text) = match (self.cell.case()?, self.file.point(PointOf::Sliding)?) {
             (Some(text), _) => ("the cell", text),
             (None, Some(PointSpec { setting, units, .. })) => {
-                ("the setting", self.case_of(&setting, &units))
+                ("the setting", self.case_of(&setting, &units)?)
             }
             (None, None) => ("the flags", self.case_of_flags()?),
         };
@@ -195,17 +195,17 @@ impl Args {
         let setting = self.parameters.setting()?;
         self.parameters
             .tell_static_friction("when sticks end depends on it");
-        Ok(self.case_of(&setting, &self.parameters.units()))
+        self.case_of(&setting, &self.parameters.units())
     }
 
     /// The text of a case file for a setting, with the start and the end of the flags.
-    fn case_of(&self, setting: &Setting, units: &Units) -> String {
-        self.start.case(&setting_text(setting, units, |_| true))
+    fn case_of(&self, setting: &Setting, units: &Units) -> Result<String, Failure> {
+        self.start
+            .case(&setting_text(setting, units, |_| true), units)
     }
 
     /// Checks that no flags that it says itself accompany a case, a map or a setting.
     fn check_alone(&self) -> Result<(), Failure> {
-        self.start.check()?;
         let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
             (Some(_), _) => alone("CASE.toml", flags || self.start.any()),

@@ -1,12 +1,14 @@
 //! The flags for the start and the end of a motion: what case files say by keys of the same names.
 
 use crate::setting::Parameter;
+use crate::setting::amount::Amount;
 use crate::setting::parameter::Group;
 use crate::setting::setting_text::number;
+use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use super::failure::Failure;
-use super::parameter_values::{Values, parse_number};
+use super::parameter_values::{TimeOr, Values, amount_of, amounts, in_units};
 use super::parameters::flag;
 use crate::text::Shown;
 
@@ -16,7 +18,7 @@ const LATEST: f64 = 1e12;
 /// The start and the end of a motion.
 #[derive(Debug)]
 pub(super) struct StartArgs {
-    state: Values,
+    state: Vec<(Parameter, Amount)>,
     times: TimeArgs,
 }
 
@@ -24,26 +26,25 @@ pub(super) struct StartArgs {
 #[derive(Debug, Args)]
 struct TimeArgs {
     /// When control begins to act, or false: never [default: 0]
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = parse_switch_on)]
-    switch_on: Option<String>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = TimeOr::word("false"))]
+    switch_on: Option<TimeOr>,
     /// End of the trace [default: when the outcome is known]
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = parse_number)]
-    until: Option<f64>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::Tau))]
+    until: Option<Amount>,
 }
 
-/// Reads a time or `false`, as the value of the key.
-fn parse_switch_on(text: &str) -> Result<String, String> {
-    match text.trim() {
-        never @ "false" => Ok(never.to_owned()),
-        time => parse_number(time)
-            .map(value)
-            .map_err(|error| format!("{error}, or false")),
+/// A time of a flag in `units`.
+fn time(flag: &str, of: &Amount, units: &Units) -> Result<String, Failure> {
+    let time = in_units(flag, of, units)?;
+    if (0.0..=LATEST).contains(&time) {
+        return Ok(number(time));
     }
-}
-
-/// A number as the value of a key.
-fn value(of: f64) -> String {
-    number(of).to_lowercase()
+    let time = Shown(time);
+    Err(Failure::bad_input(format!(
+        "{flag} {time} is outside its range: 0 or more, at most 1e12"
+    )))
 }
 
 impl StartArgs {
@@ -54,51 +55,44 @@ impl StartArgs {
     /// Whether one of the flags is given.
     pub(super) fn any(&self) -> bool {
         let TimeArgs { switch_on, until } = &self.times;
-        let state = Parameter::ALL
-            .into_iter()
-            .any(|p| self.state.get(p).is_some());
-        state || switch_on.is_some() || until.is_some()
+        !self.state.is_empty() || switch_on.is_some() || until.is_some()
     }
 
-    /// Checks that the values are in their ranges.
-    pub(super) fn check(&self) -> Result<(), Failure> {
-        for parameter in Parameter::ALL {
-            if let Some(value) = self.state.get(parameter) {
-                let checked = parameter.check(value);
-                checked.map_err(|error| Failure::out_of_range(&flag(parameter), &error))?;
-            }
-        }
-        let TimeArgs { switch_on, until } = &self.times;
-        let switch_on = switch_on.as_ref().and_then(|time| time.parse().ok());
-        for (flag, time) in [("--switch-on", switch_on), ("--until", *until)] {
-            if let Some(time) = time.filter(|time| !(0.0..=LATEST).contains(time)) {
-                let time = Shown(time);
-                return Err(Failure::bad_input(format!(
-                    "{flag} {time} is outside its range: 0 or more, at most 1e12"
-                )));
-            }
-        }
-        Ok(())
+    /// The values of the state at t = 0, in their ranges.
+    fn state(&self, units: &Units) -> Result<Vec<(&'static str, String)>, Failure> {
+        let value = |(parameter, amount): &(Parameter, Amount)| {
+            let flag = flag(*parameter);
+            let checked = parameter.check(in_units(&flag, amount, units)?);
+            let value = checked.map_err(|error| Failure::out_of_range(&flag, &error))?;
+            Ok((parameter.name(), number(value)))
+        };
+        self.state.iter().map(value).collect()
     }
 
-    /// The text of a case file with these flags as keys, and with the tables `setting`.
-    pub(super) fn case(&self, setting: &str) -> String {
+    /// The text of a case file with these flags as keys, and with the tables `setting`, which have
+    /// these units.
+    ///
+    /// # Errors
+    /// When a value is outside its range.
+    pub(super) fn case(&self, setting: &str, units: &Units) -> Result<String, Failure> {
         let TimeArgs { switch_on, until } = &self.times;
-        let given = |p: Parameter| Some((p.name(), value(self.state.get(p)?)));
-        let state: Vec<_> = Parameter::ALL.into_iter().filter_map(given).collect();
-        let trace: Vec<_> = until.iter().map(|until| ("until", value(*until))).collect();
+        let state = self.state(units)?;
         let mut text = String::new();
-        if let Some(time) = switch_on {
-            text += &format!("switch_on = {time}\n\n");
+        if let Some(of) = switch_on {
+            let switch_on = of.time().map(|of| time("--switch-on", of, units));
+            let switch_on = switch_on.unwrap_or_else(|| Ok("false".into()))?;
+            text += &format!("switch_on = {switch_on}\n\n");
         }
+        let until = until.as_ref().map(|of| time("--until", of, units));
+        let trace = until.transpose()?.map(|until| ("until", until));
         text += setting;
-        for (name, keys) in [("start", state), ("trace", trace)] {
+        for (name, keys) in [("start", state), ("trace", trace.into_iter().collect())] {
             if !keys.is_empty() {
                 text += &format!("\n[{name}]\n");
                 text.extend(keys.iter().map(|(key, value)| format!("{key} = {value}\n")));
             }
         }
-        text
+        Ok(text)
     }
 }
 
@@ -115,7 +109,7 @@ impl Args for StartArgs {
 impl FromArgMatches for StartArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         Ok(Self {
-            state: Values::of(matches, Self::of_start),
+            state: amounts(matches, Self::of_start).collect(),
             times: TimeArgs::from_arg_matches(matches)?,
         })
     }

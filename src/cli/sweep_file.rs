@@ -19,6 +19,7 @@ use crate::text::SpecError;
 
 use super::failure::Failure;
 use super::kind::Kind;
+use super::output::tell_assumed_units;
 use super::say;
 
 /// The most bytes of a sweep or case file. The text goes into maps and, with up to twice as many
@@ -45,9 +46,11 @@ pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     check_kind(path, "a sweep file, which has [axes]", |kind| {
         kind != TextKind::Sweep
     })?;
-    read_with_table(path, "sweep", |text| {
+    let plan = read_with_table(path, "sweep", |text| {
         text.parse::<SweepSpec>().and_then(Plan::new)
-    })
+    })?;
+    tell_assumed_units(&plan.spec.units);
+    Ok(plan)
 }
 
 /// The contents of a sweep or case file.
@@ -62,19 +65,26 @@ pub(super) enum Described {
 pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
     let system = |kind| kind == TextKind::System;
     check_kind(path, "a sweep or case file", system)?;
-    read_with_table(path, "sweep", |text| {
+    let described = read_with_table(path, "sweep", |text| {
         if is_case_file(text) {
             return text.parse().map(Described::Case);
         }
         let plan = text.parse::<SweepSpec>().and_then(Plan::new);
         plan.map(Described::Sweep)
-    })
+    })?;
+    tell_assumed_units(match &described {
+        Described::Sweep(plan) => &plan.spec.units,
+        Described::Case(case) => &case.units,
+    });
+    Ok(described)
 }
 
 /// The case of the case file at `path`.
 pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
     check_kind(path, "a case file", |kind| kind == TextKind::System)?;
-    read_with_table(path, "case", str::parse)
+    let case: CaseSpec = read_with_table(path, "case", str::parse)?;
+    tell_assumed_units(&case.units);
+    Ok(case)
 }
 
 /// Reads a point from the file at `path`.
@@ -82,7 +92,9 @@ pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failur
     check_kind(path, "a file of a setting", |kind| {
         kind != TextKind::Setting
     })?;
-    read_with_table(path, "setting", |text| PointSpec::read(text, of))
+    let point = read_with_table(path, "setting", |text| PointSpec::read(text, of))?;
+    tell_assumed_units(&point.units);
+    Ok(point)
 }
 
 /// Reads a friction curve from the columns of the file at `path`, for a law with this `mu_s`, its

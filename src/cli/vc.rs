@@ -10,7 +10,7 @@ use crate::setting::point_file::PointOf;
 use crate::setting::search::{self, PHASES};
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter, Setting};
-use crate::text::finite;
+use crate::text::{Shown, finite};
 use clap::ValueEnum;
 use serde::Serialize;
 use serde_json::Value;
@@ -18,9 +18,11 @@ use serde_json::Value;
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
 use super::output::warn_beyond_curve;
+use super::parameter_values::{TimeOr, in_units};
 use super::parameters::{ParameterArgs, flag};
 use super::say::ForPeople;
 use super::setting::SettingArgs;
@@ -43,8 +45,9 @@ pub(super) struct Args {
     protocol: ProtocolName,
     /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol
     /// switch-on) [default: 0]
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    phase: Option<String>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = TimeOr::word("worst"))]
+    phase: Option<TimeOr>,
     #[command(flatten)]
     limit: LimitArgs,
     /// One JSON object on standard output; null where there is no value
@@ -70,9 +73,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
         alone("--map", by_flags || args.parameters.any_but(&[]))?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
-        warn_beyond_curve(found.beyond_curve(&point.setting, &point.units));
-        let inputs = inputs(&point.setting, &point.units, point.protocol);
-        return print_found(args.json.then_some(&inputs), &found, &point.units);
+        return args.tell(&found, &point.setting, &point.units, point.protocol);
     }
     match args.protocol {
         ProtocolName::Limit => {
@@ -92,14 +93,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         protocol => {
             let (setting, units) = args.read()?;
             let protocol = match protocol {
-                ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
+                ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase(&units)?),
                 _ => search::Protocol::Follow,
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            warn_beyond_curve(found.beyond_curve(&setting, &units));
-            let inputs = inputs(&setting, &units, protocol);
-            print_found(args.json.then_some(&inputs), &found, &units)
+            args.tell(&found, &setting, &units, protocol)
         }
     }
 }
@@ -248,6 +247,22 @@ fn unit_of(key: &str, units: &Units) -> String {
 }
 
 impl Args {
+    /// Reports the critical velocity of a setting.
+    fn tell(
+        &self,
+        found: &CriticalVelocity,
+        setting: &Setting,
+        units: &Units,
+        protocol: search::Protocol,
+    ) -> Result<(), Failure> {
+        warn_beyond_curve(found.beyond_curve(setting, units));
+        let inputs = inputs(setting, units, protocol);
+        if !self.json {
+            inputs_line::print(&mut ForPeople::begin(), setting, units, &[Parameter::V0])?;
+        }
+        print_found(self.json.then_some(&inputs), found, units)
+    }
+
     /// The setting, from a file or from flags, and its units.
     fn read(&self) -> Result<(Setting, Units), Failure> {
         if let Some(point) = self.file.point(PointOf::CriticalVelocityOfSetting)? {
@@ -306,21 +321,19 @@ impl Args {
         })
     }
 
-    /// Reads the phase of the flag.
-    fn phase(&self) -> Result<Phase, Failure> {
-        match self.phase.as_deref() {
-            None => Ok(Phase::After(0.0)),
-            Some("worst") => Ok(Phase::Worst(PHASES)),
-            Some(text) => {
-                let time = text.parse::<f64>().ok();
-                let time = time.filter(|t| (0.0..=1e12).contains(t));
-                time.map(Phase::After).ok_or_else(|| {
-                    Failure::bad_input_with_help(
-                        format!("--phase {text} is neither a time nor the word worst"),
-                        "a time from a release to switch-on: 0 or more, at most 1e12",
-                    )
-                })
-            }
+    /// The phase of the flag.
+    fn phase(&self, units: &Units) -> Result<Phase, Failure> {
+        let time = match &self.phase {
+            None => return Ok(Phase::After(0.0)),
+            Some(TimeOr::Word) => return Ok(Phase::Worst(PHASES)),
+            Some(TimeOr::Time(time)) => in_units("--phase", time, units)?,
+        };
+        if (0.0..=1e12).contains(&time) {
+            return Ok(Phase::After(time));
         }
+        Err(Failure::bad_input_with_help(
+            format!("--phase {} is outside its range", Shown(time)),
+            "a time from a release to switch-on: 0 or more, at most 1e12",
+        ))
     }
 }

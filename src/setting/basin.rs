@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::keys::{BASIN, ENDS, names};
 use super::parameter::Parameter;
+use super::units::Units;
 use super::values::Setting;
 use crate::model::ModelError;
 use crate::text::toml_reader::{Entry, SpecError};
@@ -185,14 +186,16 @@ pub(super) struct BasinKeys {
 
 impl BasinKeys {
     /// Reads the table.
-    pub(super) fn read(table: &Entry) -> Result<Self, SpecError> {
+    pub(super) fn read(table: &Entry, units: &Units) -> Result<Self, SpecError> {
         let mut table = table.document(names(&BASIN))?;
         let default = Basin::default();
+        let [x_dot0, a0] = [Parameter::XDot0, Parameter::A0]
+            .map(|of| table.take(of.name(), |entry| read_box(entry, of, units)));
         let basin = Basin {
             over: table.take("over", read_over).unwrap_or(default.over),
             starts: table.take("starts", read_starts).unwrap_or(default.starts),
-            x_dot0: table.take("x_dot0", |entry| read_box(entry, Parameter::XDot0)),
-            a0: table.take("a0", |entry| read_box(entry, Parameter::A0)),
+            x_dot0,
+            a0,
         };
         table.finish()?;
         let mut keys = table.keys().rev();
@@ -222,9 +225,10 @@ fn read_starts(entry: &Entry) -> Result<u32, SpecError> {
     Basin::check_starts(entry.whole()?).map_err(|why| entry.error(why))
 }
 
-fn read_box(of: &Entry, parameter: Parameter) -> Result<[f64; 2], SpecError> {
+fn read_box(of: &Entry, parameter: Parameter, units: &Units) -> Result<[f64; 2], SpecError> {
     let mut table = of.document(ENDS)?;
-    let [from, to] = ENDS.map(|end| table.take(end, Entry::number));
+    let number = |entry: &Entry| units.number(entry, parameter.dimension());
+    let [from, to] = ENDS.map(|end| table.take(end, number));
     table.finish()?;
     let missing = |name| of.error(format!("{name} is missing"));
     let from = from.ok_or_else(|| missing("from"))?;

@@ -35,7 +35,7 @@ use super::given::GivenParameters;
 use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
-use super::units::{Units, read_units};
+use super::units::Units;
 use super::values::Setting;
 use crate::slip::case::{Case, CaseError};
 use crate::text::document::Document;
@@ -163,10 +163,11 @@ impl std::str::FromStr for CaseSpec {
         );
         let title = document.take("title", Entry::line).unwrap_or_default();
         let given = GivenParameters::of(&mut document, text, moves);
-        let switch_on = document.take("switch_on", read_switch_on);
-        let trace = document.take("trace", read_trace).unwrap_or_default();
-        let units = document.take("units", read_units).unwrap_or_default();
-        let simulation = Simulation::of(&mut document);
+        let units = given.units().clone();
+        let switch_on = document.take("switch_on", |entry| read_switch_on(entry, &units));
+        let trace = document.take("trace", |entry| read_trace(entry, &units));
+        let trace = trace.unwrap_or_default();
+        let simulation = Simulation::of(&mut document, &units);
         document.finish()?;
         let setting = setting(&given)?;
         Ok(Self {
@@ -188,13 +189,13 @@ fn moves(parameter: Parameter) -> bool {
 }
 
 /// Reads when control begins to act: a time, or +∞ for `false`.
-fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
+fn read_switch_on(entry: &Entry, units: &Units) -> Result<f64, SpecError> {
     match entry.boolean() {
         Ok(false) => Ok(f64::INFINITY),
         Ok(true) => Err(entry
             .error("true says not when")
             .help("a time from 0 on, or false for never")),
-        Err(_) => entry.number_within(0.0..=LARGEST),
+        Err(_) => units.number_within(entry, Parameter::Tau.dimension(), 0.0..=LARGEST),
     }
 }
 
@@ -205,16 +206,17 @@ struct TraceKeys {
     sampling: Option<Sampling>,
 }
 
-fn read_trace(trace: &Entry) -> Result<TraceKeys, SpecError> {
+fn read_trace(trace: &Entry, units: &Units) -> Result<TraceKeys, SpecError> {
+    let time = |entry: &Entry| units.number_within(entry, Parameter::Tau.dimension(), POSITIVE);
     let mut table = trace.document(names(&TRACE))?;
     let mut trace = TraceKeys {
-        until: table.take("until", |entry| entry.number_within(POSITIVE)),
+        until: table.take("until", time),
         sampling: None,
     };
     table.each(&["samples", "interval"], |entry| {
         let sampling = match entry.key {
             "samples" => Sampling::PerStep(read_samples(entry)?),
-            _ => Sampling::Interval(entry.number_within(POSITIVE)?),
+            _ => Sampling::Interval(time(entry)?),
         };
         match trace.sampling.replace(sampling) {
             Some(_) => Err(SpecError::at(

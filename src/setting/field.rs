@@ -1103,10 +1103,7 @@ mod tests {
 
     #[test]
     fn units_follow_from_what_is_divided_by_what() {
-        let names = ["N", "mm", "s"].map(String::from);
-        let units = Units {
-            force_length_time: Some(names),
-        };
+        let units = Units::read("N,mm,s").unwrap();
         for (name, unit) in [
             ("n_unstable", "1"),
             ("delay_margin", "s"),

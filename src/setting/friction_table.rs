@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::parameter::Parameter;
+use super::units::Units;
 use crate::model::Table;
 use crate::model::table::{TableColumn, TableError};
 use crate::text::toml_reader::{Entry, SpecError};
@@ -19,10 +21,13 @@ impl Numbers {
         self.places.push(place);
     }
 
-    fn of_array(entry: &Entry) -> Result<Self, SpecError> {
+    fn of_array(
+        entry: &Entry,
+        read: impl Fn(&Entry) -> Result<f64, SpecError>,
+    ) -> Result<Self, SpecError> {
         let mut numbers = Self::default();
         for element in entry.array()? {
-            numbers.push(element.number()?, element.span.clone());
+            numbers.push(read(&element)?, element.span.clone());
         }
         Ok(numbers)
     }
@@ -42,19 +47,20 @@ pub(super) struct GivenTable {
 
 impl GivenTable {
     /// Reads `entry` if it is a column. Returns whether it is one.
-    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
-        let column = match entry.key {
-            PAIRS => return self.read_pairs(entry).map(|()| true),
-            key if key == TableColumn::Speeds.name() => &mut self.speeds,
-            key if key == TableColumn::MuK.name() => &mut self.mu_k,
+    pub(super) fn read(&mut self, entry: &Entry, units: &Units) -> Result<bool, SpecError> {
+        let (column, of) = match entry.key {
+            PAIRS => return self.read_pairs(entry, units).map(|()| true),
+            key if key == TableColumn::Speeds.name() => (&mut self.speeds, Parameter::V0),
+            key if key == TableColumn::MuK.name() => (&mut self.mu_k, Parameter::MuK),
             _ => return Ok(false),
         };
-        *column = Some((entry.key_span.clone(), Numbers::of_array(entry)?));
+        let numbers = Numbers::of_array(entry, |of_one| units.number(of_one, of.dimension()))?;
+        *column = Some((entry.key_span.clone(), numbers));
         self.given_twice().map(|()| true)
     }
 
     /// Reads points as pairs of a speed and a value of μ_K.
-    fn read_pairs(&mut self, entry: &Entry) -> Result<(), SpecError> {
+    fn read_pairs(&mut self, entry: &Entry, units: &Units) -> Result<(), SpecError> {
         if entry.string().is_ok() || entry.is_table() {
             let message = "it names a file, which only commands on a sweep or case file read";
             return Err(entry
@@ -66,8 +72,9 @@ impl GivenTable {
             let [speed, mu] = &pair.array()?[..] else {
                 return Err(pair.error("expected a speed and a value of mu_k"));
             };
-            speeds.push(speed.number()?, speed.span.clone());
-            mu_k.push(mu.number()?, mu.span.clone());
+            let [of_speed, of_mu] = [Parameter::V0, Parameter::MuK].map(Parameter::dimension);
+            speeds.push(units.number(speed, of_speed)?, speed.span.clone());
+            mu_k.push(units.number(mu, of_mu)?, mu.span.clone());
         }
         self.pairs = Some(entry.key_span.clone());
         self.given_twice()?;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
+use super::amount::units_of;
 use super::expression::Written;
 use super::formula::GivenFormula;
 use super::friction_table::GivenTable;
@@ -14,6 +15,7 @@ use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
+use super::units::Units;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
 use crate::model::table::TableColumn;
@@ -25,6 +27,7 @@ use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 pub(super) struct GivenParameters<'t> {
     /// The whole text of the file.
     text: &'t str,
+    units: Units,
     values: Vec<(Parameter, f64)>,
     /// Values of the formula's own parameters, and all that are given, with their places.
     own_values: Vec<(Arc<OwnParameter>, f64)>,
@@ -39,11 +42,12 @@ pub(super) struct GivenParameters<'t> {
 }
 
 impl<'t> GivenParameters<'t> {
-    /// Nothing yet of the file `text`, of which `document` has the tables. The formula of a
+    /// Nothing yet of the file `text`, of which `document` has the tables, with these units. The formula of a
     /// friction law is read first: axes are of its parameters.
-    pub(super) fn begin(document: &Document, text: &'t str) -> Self {
+    pub(super) fn begin(document: &Document, text: &'t str, units: Units) -> Self {
         let mut given = Self {
             text,
+            units,
             ..Self::default()
         };
         // What is wrong with the table is told where it is read.
@@ -69,17 +73,23 @@ impl<'t> GivenParameters<'t> {
         Ok(())
     }
 
-    /// The tables of a document, in its order. For an unknown name, one of the parameters that the
-    /// document `takes` is suggested.
+    /// The tables of a document, in its order, and its units. For an unknown name, one of the
+    /// parameters that the document `takes` is suggested.
     pub(super) fn of(
         document: &mut Document,
         text: &'t str,
         takes: impl Fn(Parameter) -> bool,
     ) -> Self {
-        let mut given = Self::begin(document, text);
+        let units = units_of(document);
+        let mut given = Self::begin(document, text, units);
         let tables = ["fixed", "friction", "start"];
         document.each(&tables, |table| given.read(table, &takes));
         given
+    }
+
+    /// The units of the file.
+    pub(super) fn units(&self) -> &Units {
+        &self.units
     }
 
     /// Records the parameter of an axis.
@@ -177,7 +187,8 @@ impl<'t> GivenParameters<'t> {
 
     fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
         self.give(parameter, &entry.key_span)?;
-        self.put(parameter, entry.number()?, &entry.span)
+        let value = self.units.number(entry, parameter.dimension())?;
+        self.put(parameter, value, &entry.span)
     }
 
     /// Takes the value of a given parameter, which stands at `place`.
@@ -223,7 +234,7 @@ impl<'t> GivenParameters<'t> {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
-                None if self.table.read(&entry)? => {}
+                None if self.table.read(&entry, &self.units)? => {}
                 None => {
                     return Err(match &self.formula {
                         Some((formula, _)) => SpecError {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::quantity::Quantity;
 use super::system::{SystemModel, shipped};
+use super::units::Units;
 use super::values::Setting;
 use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
@@ -86,10 +87,10 @@ impl GivenSystem {
     }
 
     /// Reads the table `[fixed]`.
-    pub(super) fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
+    pub(super) fn read_fixed(&mut self, fixed: &Entry, units: &Units) -> Result<(), SpecError> {
         for entry in fixed.table()? {
             let of = self.give(&entry)?;
-            let checked = of.check(entry.number()?);
+            let checked = of.check(units.value(&entry, &of)?);
             let value = checked.map_err(|why| SpecError::at(entry.span.clone(), why))?;
             self.setting.vary(&of, value);
         }

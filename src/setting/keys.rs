@@ -69,8 +69,8 @@ const START: Key = key(
 const UNITS_KEY: Key = key(
     "units",
     "\"SI\", \"dimensionless\" or a table",
-    "\"dimensionless\"",
-    "the units of all numbers in the file and in what is made of it",
+    "\"dimensionless\"; \"SI\" if a number has a unit",
+    "the units of numbers without one of their own, and of what is made of the file",
 );
 
 /// The keys of a sweep file.
@@ -163,8 +163,12 @@ pub(crate) const SWEEP: [Key; 18] = [
 
 /// The keys of a range of an axis.
 pub(crate) const RANGE: [Key; 4] = [
-    needed("from", "a number", "the first value"),
-    needed("to", "a number", "the last value"),
+    needed(
+        "from",
+        "a number, or text like \"1 mm/s\"",
+        "the first value",
+    ),
+    needed("to", "a number, or text like \"1 mm/s\"", "the last value"),
     needed(
         "points",
         "a whole number, 2 to 10 000 000",

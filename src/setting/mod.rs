@@ -1,6 +1,7 @@
 //! What can be said: parameters, fields, laws, units, settings, and the files that name them.
 //!
 //! - `actuator_limits`: limits of the actuators beside what they limit
+//! - `amount`: a number as people write it, with the unit behind it
 //! - `axis`: axis values, each from its index alone
 //! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
 //! - `best_plane`: the planes of a sweep in which the best setting is searched for
@@ -38,11 +39,13 @@
 //! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
 //!   values of them
 //! - `table_file`: a sweep or case file with the contents of the files that it names
+//! - `unit`: a unit of measurement, from the words that people write
 //! - `units`: the units of a sweep
 //! - `values`: one value for every parameter, and which of them must be given
 //! - `vc_keys`: a sweep file's keys for the critical velocity
 
 pub(crate) mod actuator_limits;
+pub(crate) mod amount;
 pub mod axis;
 pub mod basin;
 pub(crate) mod best_plane;
@@ -78,6 +81,7 @@ mod spec_values;
 mod sweep_file;
 pub mod system;
 pub(crate) mod table_file;
+pub(crate) mod unit;
 pub mod units;
 pub mod values;
 mod vc_keys;

@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [fixed]                         # as in sweep files
-//! v0 = 0.35
+//! v0 = 0.35                       # or "350 mm/s": any number may have a unit
 //! alpha_v = -0.33
 //! tau = 4.15
 //!
@@ -20,7 +20,7 @@
 use super::given::GivenParameters;
 use super::parameter::{Group, Parameter};
 use super::search::Protocol;
-use super::units::{Units, read_units};
+use super::units::Units;
 use super::values::Setting;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;
@@ -78,7 +78,6 @@ impl PointSpec {
         let entries = entries(parsed.get_ref(), "");
         let mut document = Document::of(entries, keys.iter().copied());
         let given = GivenParameters::of(&mut document, text, |p| of.takes(p));
-        let units = document.take("units", read_units).unwrap_or_default();
         let search = VcKeys::of(&mut document, &Protocol::NAMES);
         document.finish()?;
         let phase = given.place(Parameter::SwitchOnPhase);
@@ -98,7 +97,7 @@ impl PointSpec {
         Ok(Self {
             protocol: protocol.at(&setting),
             setting,
-            units,
+            units: given.units().clone(),
         })
     }
 }

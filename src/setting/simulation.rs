@@ -4,6 +4,7 @@
 use std::ops::{Range, RangeInclusive};
 
 use super::parameter::{LARGEST, Parameter};
+use super::units::Units;
 use super::values::Setting;
 use crate::model::ModelError;
 use crate::slip::case::{Case, Start};
@@ -72,11 +73,13 @@ pub(crate) fn assumed_start(disturbance: f64) -> Option<String> {
 
 impl Simulation {
     /// The keys of a table, of a document of its own or in a sweep file.
-    pub(super) fn of(table: &mut Document) -> Self {
+    pub(super) fn of(table: &mut Document, units: &Units) -> Self {
         let default = Self::default();
         let tolerance = table.take("tolerance", |entry| entry.number_within(1e-15..=1e-3));
         Self {
-            horizon: table.take("horizon", |entry| entry.number_within(POSITIVE)),
+            horizon: table.take("horizon", |entry| {
+                units.number_within(entry, Parameter::Tau.dimension(), POSITIVE)
+            }),
             tolerance: tolerance.unwrap_or(default.tolerance),
             steps: table.take("steps", read_steps).unwrap_or(default.steps),
             ..default

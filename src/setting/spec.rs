@@ -51,7 +51,7 @@
 //! x_dot0 = { from = 0.0, to = 1.5 }
 //! a0 = { from = -1.0, to = 1.0 }
 //!
-//! [units]                                 # optional: names for the map, dimensionless without
+//! [units]                                 # optional: of numbers without a unit of their own
 //! force = "N"
 //! length = "m"
 //! time = "s"

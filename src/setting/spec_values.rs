@@ -5,7 +5,9 @@ use std::ops::Range;
 use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
 use super::keys::{RANGE, TOLERANCE, names};
+use super::parameter::Parameter;
 use super::quantity::Quantity;
+use super::units::Units;
 use crate::linear::MarginalTolerance;
 use crate::text::Shown;
 use crate::text::toml_reader::{Entry, SpecError};
@@ -16,9 +18,14 @@ const MOST_DEGREES: usize = 16;
 const LARGEST_DEGREE: f64 = 1e12;
 
 /// The values of an axis of at most `most` points.
-pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError> {
+pub(super) fn read_range(
+    axis: &Entry,
+    of: &Quantity,
+    units: &Units,
+    most: u64,
+) -> Result<Vec<f64>, SpecError> {
     let mut table = axis.document(names(&RANGE))?;
-    let [from, to] = ["from", "to"].map(|end| table.take(end, Entry::number));
+    let [from, to] = ["from", "to"].map(|end| table.take(end, |entry| units.value(entry, of)));
     let points = table.take("points", Entry::whole);
     let spacing = table.take("spacing", read_spacing);
     table.finish()?;
@@ -43,14 +50,18 @@ fn read_spacing(entry: &Entry) -> Result<Spacing, SpecError> {
     }
 }
 
-pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, SpecError> {
+pub(super) fn read_list(
+    axis: &Entry,
+    parameter: &Quantity,
+    units: &Units,
+) -> Result<Vec<f64>, SpecError> {
     let elements = axis
         .array()
         .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
     elements
         .iter()
         .map(|element| {
-            let value = element.number()?;
+            let value = units.value(element, parameter)?;
             parameter
                 .check(value)
                 .map_err(|why| SpecError::at(element.span.clone(), why))
@@ -58,7 +69,7 @@ pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, 
         .collect()
 }
 
-pub(super) fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
+pub(super) fn read_degrees(entry: &Entry, units: &Units) -> Result<Vec<f64>, SpecError> {
     let elements = entry
         .array()
         .map_err(|e| e.help("for example: degree_of_stability = [0.05, 0.1]"))?;
@@ -68,7 +79,7 @@ pub(super) fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
     }
     let mut degrees: Vec<f64> = Vec::new();
     for element in &elements {
-        let value = element.number()?;
+        let value = units.number(element, Parameter::AlphaV.dimension())?;
         if !(1.0 / LARGEST_DEGREE..=LARGEST_DEGREE).contains(&value) {
             return Err(element.error(format!(
                 "{} is outside its range: greater than 0, between 1e-12 and 1e12",

@@ -6,6 +6,7 @@ mod checks;
 
 use std::ops::Range;
 
+use super::amount::units_of;
 use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
@@ -20,7 +21,7 @@ use super::spec::SweepSpec;
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
-use super::units::read_units;
+use super::units::Units;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
@@ -55,14 +56,15 @@ impl SweepSpec {
              [simulation] has the horizon and the steps",
         );
         let most = most_points.min(MOST_POINTS);
-        let (system, given, axes) = read_parameters(&mut document, text, system, most);
+        let units = units_of(&mut document);
+        let (system, given, axes) = read_parameters(&mut document, text, system, &units, most);
         let asked = document.take("fields", read_fields).unwrap_or_default();
-        let simulation = document.take("simulation", read_simulation);
+        let simulation = document.take("simulation", |table| read_simulation(table, &units));
         let (simulation, horizon) = simulation.unwrap_or_default();
-        let basin = document.take("basin", BasinKeys::read).unwrap_or_default();
+        let basin = document.take("basin", |table| BasinKeys::read(table, &units));
         let [follow, switch_on] = Protocol::NAMES;
         let vc = VcKeys::of(&mut document, &[follow, switch_on, LIMIT]);
-        let degrees = document.take("degree_of_stability", read_degrees);
+        let degrees = document.take("degree_of_stability", |entry| read_degrees(entry, &units));
         let spec = Self {
             title: document
                 .take("title", Entry::line)
@@ -82,7 +84,7 @@ impl SweepSpec {
             simulation,
             basin: None,
             critical: None,
-            units: document.take("units", read_units).unwrap_or_default(),
+            units,
             text: text.to_owned(),
         };
         document.finish()?;
@@ -94,7 +96,7 @@ impl SweepSpec {
             given,
             asked,
             places,
-            basin,
+            basin: basin.unwrap_or_default(),
             vc,
             horizon,
         };
@@ -120,9 +122,12 @@ struct SweepFile<'t> {
 }
 
 /// Reads the table `[simulation]`, with the place of the horizon.
-fn read_simulation(table: &Entry) -> Result<(Simulation, Option<Range<usize>>), SpecError> {
+fn read_simulation(
+    table: &Entry,
+    units: &Units,
+) -> Result<(Simulation, Option<Range<usize>>), SpecError> {
     let mut table = table.document(names(&SIMULATION))?;
-    let simulation = Simulation::of(&mut table);
+    let simulation = Simulation::of(&mut table, units);
     table.finish()?;
     Ok((simulation, table.value("horizon").cloned()))
 }
@@ -132,16 +137,18 @@ fn read_parameters<'t>(
     document: &mut Document,
     text: &'t str,
     mut system: Option<GivenSystem>,
+    units: &Units,
     most_points: u64,
 ) -> (Option<GivenSystem>, GivenParameters<'t>, Vec<Axis>) {
-    let (mut given, mut axes) = (GivenParameters::begin(document, text), Vec::new());
+    let given = GivenParameters::begin(document, text, units.clone());
+    let (mut given, mut axes) = (given, Vec::new());
     let tables = ["axes", "fixed", "friction", "start"];
     document.each(&tables, |table| match (table.key, &mut system) {
-        ("axes", system) => read_axes(table, most_points, &mut axes, |entry| match system {
+        ("axes", system) => read_axes(table, units, most_points, &mut axes, |entry| match system {
             Some(system) => system.give(entry),
             None => given.give_axis(entry),
         }),
-        ("fixed", Some(system)) => system.read_fixed(table),
+        ("fixed", Some(system)) => system.read_fixed(table, units),
         _ => given.read(table, |_| true),
     });
     (system, given, axes)
@@ -150,6 +157,7 @@ fn read_parameters<'t>(
 /// Reads the table `[axes]`; `give` records the parameter of an axis.
 fn read_axes(
     table: &Entry,
+    units: &Units,
     most_points: u64,
     axes: &mut Vec<Axis>,
     mut give: impl FnMut(&Entry) -> Result<Quantity, SpecError>,
@@ -173,9 +181,9 @@ fn read_axes(
             return Err(entry.error(message));
         }
         let values = if entry.is_table() {
-            read_range(&entry, most_points)?
+            read_range(&entry, &parameter, units, most_points)?
         } else {
-            read_list(&entry, &parameter)?
+            read_list(&entry, &parameter, units)?
         };
         axes.push(Axis::new(parameter, values).map_err(|e| entry.error(e.message))?);
     }

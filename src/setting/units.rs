@@ -2,6 +2,7 @@
 
 use super::keys::{UNITS, names};
 use super::parameter::Parameter;
+use super::unit::{Unit, described};
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError};
 
@@ -10,6 +11,8 @@ use crate::text::toml_reader::{Entry, SpecError};
 pub struct Units {
     /// Names of the units of force, length and time, as UDUNITS writes them.
     pub force_length_time: Option<[String; 3]>,
+    /// Whether they are the SI because some number has a unit and no units are declared.
+    pub assumed: bool,
 }
 
 /// The most letters of a unit.
@@ -27,12 +30,69 @@ impl Units {
     #[must_use]
     pub fn preset(name: &str) -> Option<Self> {
         match name {
-            "SI" => Some(Self {
-                force_length_time: Some(SI.map(String::from)),
-            }),
+            "SI" => Some(Self::si()),
             "dimensionless" => Some(Self::default()),
             _ => None,
         }
+    }
+
+    /// N, m and s.
+    pub(crate) fn si() -> Self {
+        Self::named(SI.map(String::from))
+    }
+
+    /// The words force, length and time in the place of units.
+    pub(crate) fn symbolic() -> Self {
+        Self::named(["force", "length", "time"].map(String::from))
+    }
+
+    fn named(names: [String; 3]) -> Self {
+        Self {
+            force_length_time: Some(names),
+            assumed: false,
+        }
+    }
+
+    /// The SI, where no units are declared and some number has one.
+    pub(crate) fn assumed_si() -> Self {
+        Self {
+            assumed: true,
+            ..Self::si()
+        }
+    }
+
+    /// A remark on units that are assumed.
+    pub(crate) fn remark(&self) -> Option<&'static str> {
+        self.assumed.then_some(
+            "some numbers have units, and no units are declared: all others are in N, m, s and kg",
+        )
+    }
+
+    /// The units of force, length and time, where they are known units.
+    ///
+    /// # Errors
+    /// Says why numbers with units cannot be turned into these.
+    pub(super) fn bases(&self) -> Result<[Unit; 3], SpecError> {
+        let Some(names) = &self.force_length_time else {
+            let message = "a number has a unit, but all numbers here are dimensionless";
+            let help =
+                "leave the unit out, or declare units: SI, or those of force, length and time";
+            return Err(SpecError::whole(message).help(help));
+        };
+        let base = |axis: usize| {
+            let mut dimension = [0; 3];
+            dimension[axis] = 1;
+            let unit = Unit::read(&names[axis]).ok();
+            let unit = unit.filter(|unit| unit.dimension() == dimension);
+            unit.ok_or_else(|| {
+                let (name, what) = (&names[axis], described(dimension));
+                let message =
+                    format!("the declared unit \"{name}\" is not known as a unit of {what}");
+                SpecError::whole(message)
+                    .help("leave the unit behind the number out, or declare units like N, mm and s")
+            })
+        };
+        Ok([base(0)?, base(1)?, base(2)?])
     }
 
     /// Units from a text: the name of a preset, or the units of force, length and time separated by
@@ -49,9 +109,7 @@ impl Units {
         let expected = format!("expected {known}, or the units of force, length and time: N,mm,s");
         let names = <[String; 3]>::try_from(names).map_err(|_| expected)?;
         names.iter().try_for_each(|name| Self::check_name(name))?;
-        Ok(Self {
-            force_length_time: Some(names),
-        })
+        Ok(Self::named(names))
     }
 
     /// Checks that a name can be that of a unit.
@@ -151,9 +209,7 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
     let [force, length, time] = ["force", "length", "time"].map(|key| table.take(key, read_unit));
     table.finish()?;
     match (force, length, time) {
-        (Some(force), Some(length), Some(time)) => Ok(Units {
-            force_length_time: Some([force, length, time]),
-        }),
+        (Some(force), Some(length), Some(time)) => Ok(Units::named([force, length, time])),
         _ => Err(SpecError::at(
             units.key_span.clone(),
             "units: force, length and time are needed, all three",
@@ -181,9 +237,7 @@ mod tests {
         ] {
             assert!(Units::read(text).is_err(), "{text}");
         }
-        let mm = Units {
-            force_length_time: Some(["N", "mm", "s"].map(String::from)),
-        };
+        let mm = Units::named(["N", "mm", "s"].map(String::from));
         assert_eq!(of(&mm), ["N mm-1 s2", "N mm-1", "s"]);
         assert_eq!(Units::read("N, mm, s"), Ok(mm));
     }

@@ -73,6 +73,12 @@ impl<'t> Document<'t> {
         }
     }
 
+    /// Whether a string that is not taken yet passes a test, apart from those under keys of `but`.
+    pub(crate) fn any_string_but(&self, but: &[&str], test: impl Fn(&str) -> bool) -> bool {
+        let mut left = self.left.iter().filter(|entry| !but.contains(&entry.key));
+        left.any(|entry| entry.any_string(&test))
+    }
+
     fn note(&mut self, entry: &Entry, error: SpecError) {
         let place = entry.key_span.start;
         if self.error.as_ref().is_none_or(|(first, _)| place < *first) {

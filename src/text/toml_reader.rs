@@ -132,7 +132,7 @@ impl<'t> Entry<'t> {
         SpecError::at(self.key_span.clone(), message).help(help)
     }
 
-    fn expected(&self, what: &str) -> SpecError {
+    pub(crate) fn expected(&self, what: &str) -> SpecError {
         self.error(format!("expected {what}, found {}", kind(self.value)))
     }
 
@@ -181,7 +181,11 @@ impl<'t> Entry<'t> {
 
     /// A number within a range.
     pub(crate) fn number_within(&self, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
-        let value = self.number()?;
+        self.within(self.number()?, range)
+    }
+
+    /// The number `value` of this entry, if it is within a range.
+    pub(crate) fn within(&self, value: f64, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
         if range.contains(&value) {
             return Ok(value);
         }
@@ -221,6 +225,11 @@ impl<'t> Entry<'t> {
         }
     }
 
+    /// Whether a string of the value passes a test: the value itself, or one within it.
+    pub(crate) fn any_string(&self, test: &impl Fn(&str) -> bool) -> bool {
+        any_string(self.value, test)
+    }
+
     /// A string on one line, no longer than pictures have room for.
     pub(crate) fn line(&self) -> Result<&'t str, SpecError> {
         let text = self.string()?;
@@ -230,6 +239,15 @@ impl<'t> Entry<'t> {
             )));
         }
         Ok(text)
+    }
+}
+
+fn any_string(value: &DeValue, test: &impl Fn(&str) -> bool) -> bool {
+    match value {
+        DeValue::String(text) => test(text),
+        DeValue::Array(of) => of.iter().any(|value| any_string(value.get_ref(), test)),
+        DeValue::Table(of) => of.values().any(|value| any_string(value.get_ref(), test)),
+        _ => false,
     }
 }
 

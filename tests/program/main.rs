@@ -29,5 +29,6 @@ mod rig;
 mod shards;
 mod systems;
 mod traces;
+mod units;
 mod unlike;
 mod verify;

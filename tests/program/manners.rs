@@ -827,7 +827,12 @@ fn blocks_that_leave_a_measured_curve_are_warned_of() {
 #[test]
 fn no_margins_are_told_with_the_roots_that_forbid_them() {
     let folder = Folder::with(&[]);
-    let told = |args: &[&str]| out(&folder.run(args));
+    let told = |args: &[&str]| {
+        let text = out(&folder.run(args));
+        let (inputs, rest) = text.split_once('\n').unwrap();
+        assert!(inputs.starts_with("inputs: mu_prime = "), "{text}");
+        rest.to_owned()
+    };
     let unstable = ["margins", "--mu-prime=-0.5", "--alpha-n=-2", "--tau=5"];
     assert_eq!(
         told(&unstable),

@@ -16,6 +16,7 @@ use crate::linear::status::FLAGS;
 use crate::setting::field::Storage;
 use crate::setting::keys::{self, Key};
 use crate::setting::law_kind::{LawKind, NamedLaw};
+use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::sweep::described::schema;
 use clap::ValueEnum;
@@ -166,7 +167,7 @@ fn fields(page: &mut String) {
             Storage::Kind | Storage::Few => "integer of 8 bits",
             Storage::Real => "real of 64 bits",
         };
-        let unit = field.unit(&symbolic());
+        let unit = field.unit(&Units::symbolic());
         let mut text = format!("{}. Unit: {unit}. Stored as: {stored}.", field.long_name());
         if let Some(comment) = field.comment() {
             let _ = write!(text, " Note: {comment}.");
@@ -196,12 +197,6 @@ fn fields(page: &mut String) {
         ]
     });
     table(page, ["bit", "name", "meaning"], rows.collect());
-}
-
-/// Units with the names of the quantities that they measure.
-fn symbolic() -> crate::setting::units::Units {
-    let force_length_time = Some(["force", "length", "time"].map(String::from));
-    crate::setting::units::Units { force_length_time }
 }
 
 fn meaning_of_flag(name: &str) -> &'static str {
