@@ -79,7 +79,7 @@ pub(crate) const CURVES: &[Curve] = &[
     points(
         "order.csv",
         NOTHING,
-        "column 1 (belt) is taken as the speed",
+        "column 1 (belt) is taken as the speed, column 2 (ratio) as the friction",
     ),
     points("swapped.csv", NOTHING, ""),
     points(

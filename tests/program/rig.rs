@@ -195,7 +195,7 @@ fn a_sweep_takes_its_curve_from_a_file() {
     let mut plan = folder.command(&["plan", "-"]);
     plan.stdin(std::fs::File::open(folder.path().join("rig/named.toml")).unwrap());
     expect(&plan.output().unwrap(), 0, "cells 4");
-    // Mistakes: at the name, with the line of the file.
+    // Mistakes: at the name, or in the file.
     let refused = |says: &str| {
         let output = folder.run(&["plan", "rig/named.toml"]);
         expect(&output, 2, says);
@@ -208,8 +208,14 @@ fn a_sweep_takes_its_curve_from_a_file() {
         assert!(err(&output).contains(&at), "{}", err(&output));
     };
     refused("friction.table: cannot read curve.csv: No such file");
-    inside("curve.csv", "speed, mu\n0, 0.5\n0.1, much\n");
-    refused("friction.table: curve.csv:3: this line is not two numbers with decimal points");
+    inside("curve.csv", "speed, mu\n0, 0.5\n0.1, -0.4\n");
+    let output = folder.run(&["plan", "rig/named.toml"]);
+    expect(
+        &output,
+        2,
+        "line 3, column 2 (mu): friction is greater than 0",
+    );
+    assert!(err(&output).contains("[curve.csv:3:6]"), "{}", err(&output));
     std::fs::remove_file(folder.path().join("rig/curve.csv")).unwrap();
     let pipe = folder.path().join("rig/curve.csv");
     let made = std::process::Command::new("mkfifo").arg(pipe).status();

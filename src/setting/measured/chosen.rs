@@ -126,26 +126,34 @@ impl Choice<'_> {
         ];
         let given = |role| self.options.columns.of(role).is_some();
         // A force that is asked for counts more than a title.
-        mu = mu.filter(|_| !given(Role::Force));
+        mu = mu.filter(|_| !given(Role::Force) && !given(Role::Load));
         let mut remark = None;
         let numeric = (0..self.sheet.width).filter(|column| self.sheet.is_numeric(*column));
         if let [first, second] = numeric.collect::<Vec<_>>()[..] {
             let other = |than: usize| if than == first { second } else { first };
-            match (speed, mu.or(force)) {
-                (None, None) => {
-                    (speed, mu) = (Some(first), Some(second));
-                    let columns = [first, second].map(|column| self.titles.name(column));
-                    remark = self.titles.row.map(|_| Remark::ByOrder { columns });
-                }
+            let (found, friction) = (speed, mu.or(force));
+            match (found, friction) {
+                (None, None) => (speed, mu) = (Some(first), Some(second)),
                 (None, Some(friction)) => speed = Some(other(friction)),
                 (Some(speed), None) => mu = Some(other(speed)),
                 _ => {}
+            }
+            if let (None, ..) | (_, None) = (found, friction)
+                && let (Some(speed), Some(friction)) = (speed, mu.or(force))
+            {
+                let columns = [speed, friction].map(|column| self.titles.name(column));
+                remark = self.titles.row.map(|_| Remark::ByOrder { columns });
             }
         }
         let speed = speed.ok_or_else(|| {
             let example = mu.or(force).map_or("speed=1,mu=2", |_| "speed=1");
             self.error(untold("the speed"), example)
         })?;
+        if mu.or(force) == Some(speed) {
+            let name = self.titles.name(speed);
+            let message = format!("{name} is given as the speed and as the friction");
+            return Err(self.error(message, "speed=1,mu=2"));
+        }
         let load = match (mu, load, self.options.normal_load) {
             (Some(_), ..) => None,
             (None, Some(column), _) => Some(Load::Column(column)),

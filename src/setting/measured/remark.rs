@@ -45,9 +45,9 @@ pub enum Remark {
         /// How to say the units of the setting.
         say: &'static str,
     },
-    /// Titles do not tell what the columns hold.
+    /// Titles do not tell what all columns hold.
     ByOrder {
-        /// The column taken as the speed, and that taken as μ_K.
+        /// The column taken as the speed, and that taken as the friction.
         columns: [String; 2],
     },
 }
@@ -102,8 +102,8 @@ impl fmt::Display for Remark {
                 columns: [speed, mu],
             } => write!(
                 f,
-                "titles do not tell what the columns hold: {speed} is taken as the speed, {mu} as \
-                 mu_k"
+                "titles do not tell what all columns hold: {speed} is taken as the speed, {mu} as \
+                 the friction"
             ),
         }
     }

@@ -81,6 +81,7 @@ fn what_was_done_is_told() {
     let first = "line 2 is left out: it is no numbers";
     assert_eq!(told("v,mu\n-,0.5\n0,0.5\n1,0.4\n"), first);
     assert!(told("a,b\n0,0.5\n1,0.4\n").contains("column 1 (a) is taken as the speed"));
+    assert!(told("v,b\n0,0.5\n1,0.4\n").contains("column 2 (b) as the friction"));
     assert!(told("v (mm/s),mu\n0,0.5\n1,0.4\n").contains("--units SI"));
     assert!(told("v,mu\n0,0.5\n1,0.4\n1,0.4\n").starts_with("2 readings at the same"));
     assert!(told("v,mu\n-1,-0.5\n1,0.5\n").ends_with("mu_k is the same there"));
@@ -227,6 +228,13 @@ const MISTAKES: &[Mistake] = &[
         "v set,v,mu",
         "may both be the speed",
         "--columns speed",
+    ),
+    (
+        "v,F,x\n0,5,1\n",
+        "speed=1,mu=v",
+        "v,F,x",
+        "given as the speed and as the friction",
+        "columns: 1 v",
     ),
     (
         "v,F,N\n1,2,3\n2,3,0\n",
