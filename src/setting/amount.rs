@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use super::quantity::Quantity;
 use super::unit::{Unit, described, example};
 use super::units::{Units, read_units};
-use crate::text::SpecError;
+use crate::text::{Shown, SpecError};
 use crate::text::document::Document;
 use crate::text::toml_reader::Entry;
 
@@ -136,6 +136,20 @@ impl Units {
         amount.value(self).map_err(at)
     }
 
+    /// The dimension of a unit that is made of these units.
+    pub(super) fn dimension_of(&self, text: &str) -> Result<[i32; 3], SpecError> {
+        let unit = Unit::read(text)?;
+        match unit.value("1", self)? {
+            1.0 => Ok(unit.dimension()),
+            other => {
+                let own = self.of(unit.dimension());
+                let message = format!("1 {unit} is {} {own}", Shown(other));
+                let help = format!("type \"{own}\": numbers of the file are in its units");
+                Err(SpecError::whole(message).help(help))
+            }
+        }
+    }
+
     /// The number of an entry within a range, as [`Units::number`] reads it.
     pub(super) fn number_within(
         &self,
@@ -146,11 +160,11 @@ impl Units {
         entry.within(self.number(entry, dimension)?, range)
     }
 
-    /// The value of a quantity in an entry. A system's own parameter has a unit of its own.
+    /// The value of a quantity in an entry.
     pub(super) fn value(&self, entry: &Entry, of: &Quantity) -> Result<f64, SpecError> {
         match of {
             Quantity::Known(parameter) => self.number(entry, parameter.dimension()),
-            Quantity::Own(_) => entry.number(),
+            Quantity::Own(own) => self.number(entry, own.dimension),
         }
     }
 }

@@ -9,6 +9,7 @@ use super::expression::{
 use super::map_names;
 use super::parameter::{Group, LARGEST, Parameter};
 use super::system::parameter::OwnParameter;
+use super::units::Units;
 use super::values::Setting;
 use crate::model::elementary::{atan, cos, cosh, ln, sin, sinh, tanh};
 use crate::model::law::formula::{Builder, Node, Operand};
@@ -124,6 +125,7 @@ fn own_parameter((index, name): (usize, &str)) -> Arc<OwnParameter> {
         minimum: -LARGEST,
         maximum: LARGEST,
         unit: "1".to_owned(),
+        dimension: [0; 3],
     })
 }
 
@@ -185,6 +187,16 @@ impl GivenFormula {
         let meant = did_you_mean(name, names.iter().copied());
         SpecError::whole(format!("mu_k has no `{name}` in it"))
             .help(format!("{meant}its parameters: {}", names.join(", ")))
+    }
+
+    /// Gives an own parameter a dimension in these units.
+    pub(super) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
+        let model = Arc::make_mut(&mut self.model);
+        model.own[own.index] = Arc::new(OwnParameter {
+            unit: units.of(dimension),
+            dimension,
+            ..own.clone()
+        });
     }
 
     pub(super) fn get(&self, own: &OwnParameter) -> f64 {

@@ -2,19 +2,16 @@
 //! every key.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
 use super::amount::units_of;
-use super::expression::Written;
-use super::formula::GivenFormula;
+use super::formula_keys::{FormulaKeys, given_twice};
 use super::friction_table::GivenTable;
 use super::keys::FRICTION_TABLE;
 use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
-use super::system::parameter::OwnParameter;
 use super::units::Units;
 use super::values::{GivenError, Setting};
 use crate::model::ModelError;
@@ -24,40 +21,24 @@ use crate::text::toml_reader::{Entry, SpecError, unknown_key};
 
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
-pub(super) struct GivenParameters<'t> {
-    /// The whole text of the file.
-    text: &'t str,
+pub(super) struct GivenParameters {
     units: Units,
     values: Vec<(Parameter, f64)>,
-    /// Values of the formula's own parameters, and all that are given, with their places.
-    own_values: Vec<(Arc<OwnParameter>, f64)>,
-    own_places: Vec<(Arc<OwnParameter>, Range<usize>)>,
-    /// What is wrong with the formula of the friction law.
-    misread: Option<SpecError>,
-    /// The formula of the friction law, and the place of its expression.
-    formula: Option<(GivenFormula, Range<usize>)>,
+    formula: FormulaKeys,
     law: Option<(LawKind, Range<usize>)>,
     table: GivenTable,
     places: Vec<(Parameter, Range<usize>)>,
 }
 
-impl<'t> GivenParameters<'t> {
-    /// Nothing yet of the file `text`, of which `document` has the tables, with these units. The formula of a
-    /// friction law is read first: axes are of its parameters.
-    pub(super) fn begin(document: &Document, text: &'t str, units: Units) -> Self {
-        let mut given = Self {
-            text,
+impl GivenParameters {
+    /// Nothing yet of the file `text`, of which `document` has the tables, with these units. The
+    /// formula of a friction law is read first.
+    pub(super) fn begin(document: &Document, text: &str, units: Units) -> Self {
+        Self {
+            formula: FormulaKeys::ahead(document, text, &units),
             units,
             ..Self::default()
-        };
-        // What is wrong with the table is told where it is read.
-        let entries = document.ahead("friction").map(Entry::table);
-        match entries.and_then(|entries| given.read_formula(&entries.ok()?)) {
-            Some(Ok(formula)) => given.formula = Some(formula),
-            Some(Err(error)) => given.misread = Some(error),
-            None => {}
         }
-        given
     }
 
     /// Records that the file gives `parameter`, as a value or as an axis.
@@ -77,7 +58,7 @@ impl<'t> GivenParameters<'t> {
     /// parameters that the document `takes` is suggested.
     pub(super) fn of(
         document: &mut Document,
-        text: &'t str,
+        text: &str,
         takes: impl Fn(Parameter) -> bool,
     ) -> Self {
         let units = units_of(document);
@@ -94,30 +75,14 @@ impl<'t> GivenParameters<'t> {
 
     /// Records the parameter of an axis.
     pub(super) fn give_axis(&mut self, axis: &Entry) -> Result<Quantity, SpecError> {
-        if let Some(own) = self.own_named(axis.key) {
-            self.give_own(&own, &axis.key_span)?;
+        if let Some(own) = self.formula.own_named(axis.key) {
+            self.formula.give(&own, &axis.key_span)?;
             return Ok(Quantity::Own(own));
         }
         let parameter = Parameter::from_name(axis.key);
-        let parameter = parameter.ok_or_else(|| self.unknown_axis(axis))?;
+        let parameter = parameter.ok_or_else(|| self.formula.unknown_axis(axis))?;
         self.give(parameter, &axis.key_span)?;
         Ok(parameter.into())
-    }
-
-    /// The error of an axis of no known parameter: where the formula is not understood, it may be
-    /// one of its own.
-    fn unknown_axis(&self, axis: &Entry) -> SpecError {
-        if let Some(misread) = &self.misread {
-            return misread.clone();
-        }
-        let formula = self.formula.iter().flat_map(|(formula, _)| formula.own());
-        let own = formula.map(|(own, _)| &*own.name);
-        let known: Vec<&str> = Parameter::ALL
-            .map(Parameter::name)
-            .into_iter()
-            .chain(own)
-            .collect();
-        axis.unknown(&known)
     }
 
     /// Reads one of the tables of parameters. For an unknown name, one of the parameters that the
@@ -215,20 +180,8 @@ impl<'t> GivenParameters<'t> {
             .chain(table)
             .collect();
         let mut law = None;
-        let entries = friction.table()?;
-        // Told at its place, unless something before it is wrong.
-        let formula = self.read_formula(&entries);
-        for entry in entries {
-            let of_formula = entry.key == TableColumn::MuK.name();
-            if let Some(formula) = formula.clone().filter(|_| of_formula) {
-                self.formula = Some(formula?);
-                continue;
-            }
-            if let Some(own) = self.own_named(entry.key) {
-                self.give_own(&own, &entry.key_span)?;
-                let value = own.check(entry.number()?);
-                let value = value.map_err(|why| SpecError::at(entry.span.clone(), why))?;
-                self.own_values.push((own, value));
+        for entry in friction.table()? {
+            if self.formula.take(&entry, &self.units)? {
                 continue;
             }
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
@@ -236,13 +189,8 @@ impl<'t> GivenParameters<'t> {
                 None if entry.key == "law" => law = Some(entry),
                 None if self.table.read(&entry, &self.units)? => {}
                 None => {
-                    return Err(match &self.formula {
-                        Some((formula, _)) => SpecError {
-                            span: Some(entry.key_span.clone()),
-                            ..formula.unknown(entry.key)
-                        },
-                        None => entry.unknown(&known),
-                    });
+                    let of_formula = self.formula.unknown_key(&entry);
+                    return Err(of_formula.unwrap_or_else(|| entry.unknown(&known)));
                 }
             }
         }
@@ -261,14 +209,7 @@ impl<'t> GivenParameters<'t> {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
         if name == LawKind::FORMULA {
-            let Some((formula, _)) = &self.formula else {
-                return Err(entry
-                    .error("mu_k is not given: the formula law is an expression in v")
-                    .help(
-                        "mu_k = \"mu0 + (mu_s - mu0)*exp(-v/v_s)\", and a key for each name in it",
-                    ));
-            };
-            return Ok(LawKind::Formula(formula.clone()));
+            return self.formula.law(entry);
         }
         let law = LawKind::named(name).map_err(|error| SpecError {
             help: error.help,
@@ -281,47 +222,6 @@ impl<'t> GivenParameters<'t> {
             );
         }
         Ok(law)
-    }
-
-    /// The formula of `[friction]`, with the place of its expression; none of another law.
-    fn read_formula(&self, friction: &[Entry]) -> Option<ReadFormula> {
-        let of = |key: &str| friction.iter().find(|entry| entry.key == key);
-        of("law").filter(|law| law.string().is_ok_and(|name| name == LawKind::FORMULA))?;
-        let key = TableColumn::MuK.name();
-        let written = Written::of(key, of(key)?, self.text);
-        Some(written.and_then(|written| {
-            let formula = GivenFormula::written(&written)?;
-            Ok((formula, written.span))
-        }))
-    }
-
-    /// The formula's own parameter of that name.
-    fn own_named(&self, name: &str) -> Option<Arc<OwnParameter>> {
-        let (formula, _) = self.formula.as_ref()?;
-        formula.own_named(name).cloned()
-    }
-
-    /// Records that the file gives a parameter of the formula, as a value or as an axis.
-    fn give_own(&mut self, own: &Arc<OwnParameter>, key: &Range<usize>) -> Result<(), SpecError> {
-        if self.own_places.iter().any(|(given, _)| given == own) {
-            return Err(given_twice(&own.name, key));
-        }
-        self.own_places.push((Arc::clone(own), key.clone()));
-        Ok(())
-    }
-
-    /// Checks that every parameter of the formula is given.
-    fn check_own(&self) -> Result<(), SpecError> {
-        let Some((formula, place)) = &self.formula else {
-            return Ok(());
-        };
-        let given = |own: &OwnParameter| self.own_places.iter().any(|(of, _)| **of == *own);
-        formula.missing(given).map_or(Ok(()), |error| {
-            Err(SpecError {
-                span: Some(place.clone()),
-                ..error
-            })
-        })
     }
 
     /// Checks that motions can be followed under the law, as far as the law alone decides this.
@@ -360,8 +260,7 @@ impl<'t> GivenParameters<'t> {
     /// parameter that it names or from which that follows, else the name of the law. Where a fixed
     /// μ0 is above a given μ_S, the latter is to blame.
     fn place_of(&self, error: &ModelError) -> Option<&Range<usize>> {
-        let formula = self.formula.as_ref().map(|(_, place)| place);
-        let at_rest = self.table.at_rest().or(formula);
+        let at_rest = self.table.at_rest().or(self.formula.place());
         let named = Parameter::from_name(error.parameter);
         let fixed = |p: Parameter| self.values.iter().any(|(given, _)| *given == p);
         let mu_s = || match named {
@@ -418,9 +317,7 @@ impl<'t> GivenParameters<'t> {
         for (parameter, value) in &self.values {
             setting.set(*parameter, *value);
         }
-        for (own, value) in &self.own_values {
-            setting.vary(&Quantity::Own(Arc::clone(own)), *value);
-        }
+        self.formula.fill(&mut setting);
         setting
     }
 
@@ -456,7 +353,7 @@ impl<'t> GivenParameters<'t> {
         let law = self.law.as_ref().map(|(law, _)| law);
         let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
         self.check_limits(optional)?;
-        self.check_own()?;
+        self.formula.check()?;
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
                 GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),
@@ -471,14 +368,6 @@ impl<'t> GivenParameters<'t> {
             }
         })
     }
-}
-
-/// A formula, with the place of its expression.
-type ReadFormula = Result<(GivenFormula, Range<usize>), SpecError>;
-
-fn given_twice(name: &str, key: &Range<usize>) -> SpecError {
-    SpecError::at(key.clone(), format!("{name} is given twice"))
-        .help("a parameter is either an axis or a fixed value")
 }
 
 impl Setting {
@@ -503,19 +392,14 @@ impl Setting {
     ) -> Result<Self, SpecError> {
         let nowhere = 0..0;
         let mut given = GivenParameters {
-            formula: match &law {
-                Some(LawKind::Formula(formula)) => Some((formula.clone(), nowhere.clone())),
-                _ => None,
-            },
+            formula: FormulaKeys::of(law.as_ref()),
             law: law.map(|law| (law, nowhere.clone())),
             ..GivenParameters::default()
         };
         let mut take = |name: &str, value| {
-            if let Some(own) = given.own_named(name) {
-                given.give_own(&own, &nowhere)?;
-                let value = own.check(value).map_err(SpecError::whole)?;
-                given.own_values.push((own, value));
-                return Ok(());
+            if let Some(own) = given.formula.own_named(name) {
+                given.formula.give(&own, &nowhere)?;
+                return given.formula.put(&own, value, &nowhere);
             }
             let parameter = Parameter::from_name(name).ok_or_else(|| {
                 let law = given.law.as_ref().map(|(law, _)| law);

@@ -183,7 +183,7 @@ pub(crate) const RANGE: [Key; 4] = [
 ];
 
 /// The keys of `[friction]` besides the parameters of the laws.
-pub(crate) const FRICTION_TABLE: [Key; 4] = [
+pub(crate) const FRICTION_TABLE: [Key; 5] = [
     needed("law", "the name of a law", "the law"),
     key(
         "speeds",
@@ -195,7 +195,8 @@ pub(crate) const FRICTION_TABLE: [Key; 4] = [
         "mu_k",
         "as many numbers",
         "none",
-        "with law = \"table\": the friction coefficients there",
+        "with law = \"table\": the friction coefficients there; with law = \"formula\": an \
+         expression in the speed `v`, whose other names are keys beside it",
     ),
     key(
         "table",
@@ -203,6 +204,12 @@ pub(crate) const FRICTION_TABLE: [Key; 4] = [
         "none",
         "with law = \"table\": the points, in place of both lists; a name is read from the folder \
          of the file it stands in",
+    ),
+    key(
+        "units",
+        "a table of units, such as { sigma = \"s/m\" }",
+        "numbers without unit",
+        "with law = \"formula\": the units of its own parameters, made of those of the file",
     ),
 ];
 

@@ -12,6 +12,7 @@
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `formula`: a friction law as an expression in the speed
+//! - `formula_keys`: the keys of `[friction]` that belong to a formula
 //! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
@@ -56,6 +57,7 @@ pub(crate) mod command;
 mod expression;
 pub mod field;
 pub mod formula;
+mod formula_keys;
 mod friction_table;
 mod given;
 mod given_system;

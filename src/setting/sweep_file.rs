@@ -111,7 +111,7 @@ struct SweepFile<'t> {
     spec: SweepSpec,
     /// The system, where it is not the letter's.
     system: Option<GivenSystem>,
-    given: GivenParameters<'t>,
+    given: GivenParameters,
     /// The fields in the order of the file, and their places.
     asked: Vec<Field>,
     places: Vec<Range<usize>>,
@@ -133,13 +133,13 @@ fn read_simulation(
 }
 
 /// Reads the tables of parameters: of the system, or of the block.
-fn read_parameters<'t>(
+fn read_parameters(
     document: &mut Document,
-    text: &'t str,
+    text: &str,
     mut system: Option<GivenSystem>,
     units: &Units,
     most_points: u64,
-) -> (Option<GivenSystem>, GivenParameters<'t>, Vec<Axis>) {
+) -> (Option<GivenSystem>, GivenParameters, Vec<Axis>) {
     let given = GivenParameters::begin(document, text, units.clone());
     let (mut given, mut axes) = (given, Vec::new());
     let tables = ["axes", "fixed", "friction", "start"];

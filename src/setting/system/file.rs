@@ -187,6 +187,7 @@ fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
         minimum: WIDEST[0],
         maximum: WIDEST[1],
         unit: "1".to_owned(),
+        dimension: [0; 3],
     };
     let widest = WIDEST[0]..=WIDEST[1];
     if !of.is_table() {

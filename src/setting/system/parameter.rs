@@ -20,6 +20,8 @@ pub struct OwnParameter {
     pub maximum: f64,
     /// Its unit, "1" where it has none.
     pub unit: String,
+    /// Powers of force, length and time, where numbers with units are understood.
+    pub dimension: [i32; 3],
 }
 
 /// The range of a parameter for which the file gives none.
