@@ -29,8 +29,15 @@ pub(super) fn print(
     let given = Parameter::ALL.into_iter().filter(told);
     let law = setting.law().map(|law| ("friction", law.name().to_owned()));
     let given = given.map(|p| (p.name(), value(setting, units, p)));
+    let formula = setting.formula().map(|of| ("mu_k", of.text().to_owned()));
+    let own = setting.own().map(|(own, value)| {
+        let value = rounded(value, DIGITS[0]) + &unit_behind(&own.unit);
+        (&*own.name, value)
+    });
     let inputs: Vec<String> = given
         .chain(law)
+        .chain(formula)
+        .chain(own)
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
     let sliding = !left_out.contains(&Parameter::V0);

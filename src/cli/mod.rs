@@ -15,11 +15,13 @@
 //! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
+//! - `formula_args`: the friction law of `--friction formula`
 //! - `info`: `slipmap info`
 //! - `info_trace`: `slipmap info` for a trace
 //! - `inputs_line`: the line of inputs with which answers about a block begin
 //! - `json`: the output of commands with `--json`
 //! - `kind`: the kind of a file of slipmap, for commands that take another kind
+//! - `law_args`: the flags of a friction law besides its parameters
 //! - `limit_args`: the flags for a point of the limit of a short delay
 //! - `man`: `slipmap man`
 //! - `margins`: `slipmap margins`
@@ -73,11 +75,13 @@ mod completions;
 mod excerpt;
 mod export;
 mod failure;
+mod formula_args;
 mod info;
 mod info_trace;
 mod inputs_line;
 mod json;
 mod kind;
+mod law_args;
 mod limit_args;
 mod man;
 mod margins;

@@ -69,9 +69,6 @@ impl Values {
     }
 }
 
-/// Why a text is no number.
-pub(super) const NO_NUMBER: &str = "expected a number, such as -0.3 or 1e-2";
-
 /// The numbers of the flags of the parameters in `wanted` groups.
 pub(super) fn amounts(
     matches: &ArgMatches,

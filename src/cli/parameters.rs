@@ -1,83 +1,32 @@
 //! The flags for a point of parameter space, with the same words as sweep files.
 
 use std::marker::PhantomData;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 use crate::model::{ModelError, RateAndState};
 use crate::setting::Parameter;
-use crate::setting::formula::GivenFormula;
 use crate::setting::law_kind::{LawKind, NO_MOTIONS, NamedLaw};
-use crate::setting::measured::{Columns, CurveOptions, SpeedUnit, Spoken};
+use crate::setting::measured::{CurveOptions, Spoken};
 use crate::setting::parameter::Group;
-use crate::setting::quantity::Quantity;
 use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::units::Units;
 use crate::setting::values::Setting;
-use crate::text::{Shown, SpecError};
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use crate::text::Shown;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
+use super::formula_args;
+use super::law_args::{LawArgs, law_names};
 use super::output::{tell_assumed_units, warn_beyond_curve, warn_of_idle_delay};
-use super::parameter_values::{NO_NUMBER, Values, units_of};
+use super::parameter_values::{Values, units_of};
 use super::say;
 use super::sets::SetArgs;
 use super::sweep_file::read_table;
-
-/// The flags of a friction law besides its parameters, and of units.
-#[derive(Debug, Args)]
-struct LawArgs {
-    /// Friction law, instead of --mu-prime and --mu-k
-    #[arg(long, value_parser = law_names(false))]
-    friction: Option<String>,
-    /// Points of a measured friction law, for --friction table: columns of the speed, and of μ_K
-    /// or a force, which is divided by --normal-load
-    #[arg(long, value_name = "FILE.csv")]
-    table: Option<PathBuf>,
-    /// Columns of --table by title or number: speed, and mu or force, and load where a column has
-    /// it, as in speed=2,force=4 [default: by titles]
-    #[arg(long, value_name = "LIST", value_parser = Columns::read, requires = "table")]
-    columns: Option<Columns>,
-    /// Unit of the speeds in --table, as in mm/s [default: that of their title, else of --units]
-    #[arg(long, value_name = "UNIT", value_parser = SpeedUnit::read, requires = "table")]
-    speed_unit: Option<SpeedUnit>,
-    /// Units of the numbers given and told: SI, or those of force, length and time, as in N,mm,s
-    /// [default: SI if a number has a unit, as in 2.4kg or 3mm/s, else dimensionless]
-    #[arg(long, value_name = "UNITS", value_parser = Units::read)]
-    units: Option<Units>,
-    #[command(flatten)]
-    sets: SetArgs,
-}
-
-/// Friction laws by name, with their formulas; those without motions are hidden where motions are
-/// followed.
-fn law_names(of_motions: bool) -> PossibleValuesParser {
-    let formulas = NamedLaw::all().iter().map(move |law| {
-        let hidden = of_motions && LawKind::Named(law).has_state();
-        let value = PossibleValue::new(law.name()).help(law.formula());
-        value.hide(hidden)
-    });
-    let table = PossibleValue::new(LawKind::TABLE)
-        .help("The points in the file --table, joined by monotone cubics");
-    let formula = PossibleValue::new(LawKind::FORMULA)
-        .help("The expression --mu-k in the speed v, with parameters of its own");
-    PossibleValuesParser::new(formulas.chain([table, formula]))
-}
 
 /// The failure for a law with a state where motions are followed.
 fn no_motions() -> Failure {
     let law = RateAndState::FORM.name;
     Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
-}
-
-/// The failure for parameters that nothing names.
-fn no_formula() -> Failure {
-    Failure::bad_input_with_help(
-        "--set gives a parameter that a system or a formula names: neither is given",
-        "--system NAME, or --friction formula --mu-k 'EXPRESSION'",
-    )
 }
 
 /// A point of parameter space.
@@ -174,50 +123,16 @@ impl<A: Asks> ParameterArgs<A> {
         &self.law.sets
     }
 
-    /// The formula of the flags, with values of its own parameters.
-    fn formula(&self) -> Result<LawKind, Failure> {
-        let Some(text) = &self.mu_k else {
-            return Err(Failure::bad_input_with_help(
-                "--mu-k is not given: the formula law is an expression in the speed v",
-                "--mu-k 'mu0 + (mu_s - mu0)*exp(-v/v_s)' --mu0 0.3 --v-s 0.1; other names by \
-                 --set NAME=VALUE",
-            ));
-        };
-        let formula = GivenFormula::read(text);
-        let formula = formula.map_err(|error| Failure::in_file(error, "--mu-k", text))?;
-        let mut setting = Setting::new(Some(LawKind::Formula(formula.clone())));
-        for set in self.law.sets.each()? {
-            let own = formula.own_named(&set.name);
-            let own = own.ok_or_else(|| set.refused(formula.unknown(&set.name)))?;
-            let value = own.check(set.value);
-            let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
-            setting.vary(&Quantity::Own(Arc::clone(own)), value);
-        }
-        let missing = setting.formula().and_then(|of| of.missing(|_| false));
-        match (missing, setting.law()) {
-            (None, Some(law)) => Ok(law.clone()),
-            (error, _) => Err(error.map_or_else(no_formula, Failure::of_input)),
-        }
-    }
-
-    /// Refuses parts of a formula where there is none.
-    fn check_no_formula(&self) -> Result<(), Failure> {
-        match (&self.mu_k, self.given(Parameter::MuK)) {
-            (Some(text), None) => Err(Failure::bad_input_with_help(
-                format!("--mu-k {text}: {NO_NUMBER}"),
-                "an expression in v is for --friction formula",
-            )),
-            _ if self.law.sets.any() => Err(no_formula()),
-            _ => Ok(()),
-        }
-    }
-
     /// The friction law of the flags, with the points of its file.
     fn law(&self) -> Result<Option<LawKind>, Failure> {
         if self.law.friction.as_deref() == Some(LawKind::FORMULA) && self.law.table.is_none() {
-            return self.formula().map(Some);
+            return formula_args::law(self.mu_k.as_deref(), &self.law.sets).map(Some);
         }
-        self.check_no_formula()?;
+        let no_number = self
+            .mu_k
+            .as_ref()
+            .filter(|_| self.given(Parameter::MuK).is_none());
+        formula_args::check_none(no_number, &self.law.sets)?;
         let help =
             "--friction table --table FILE.csv, with columns of the speed and of mu_k or a force";
         match (self.law.friction.as_deref(), &self.law.table) {

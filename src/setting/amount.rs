@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 use super::quantity::Quantity;
 use super::unit::{Unit, described, example};
 use super::units::{Units, read_units};
-use crate::text::{Shown, SpecError};
 use crate::text::document::Document;
 use crate::text::toml_reader::Entry;
+use crate::text::{Shown, SpecError};
 
 /// A number, with a unit if it has one.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::given::GivenParameters;
+use super::given_error::GivenError;
 use super::needs::no_meaning;
 use super::parameter::Parameter;
-use super::values::{GivenError, Setting};
+use super::values::Setting;
 use crate::text::toml_reader::SpecError;
 
 /// Keys at the top of a sweep file that are allowed in the limit.

@@ -8,6 +8,7 @@
 //! - `beyond_curve`: remarks on velocities beyond the points of a measured friction law
 //! - `case_file`: the case file: one motion, read and checked once
 //! - `catalogue`: enumerations with a table of facts, one row for each value
+//! - `checked`: a setting of named numbers, checked as a file is
 //! - `command`: the command line for a setting
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
@@ -15,6 +16,7 @@
 //! - `formula_keys`: the keys of `[friction]` that belong to a formula
 //! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
+//! - `given_error`: why given parameters do not make a setting, in words
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
@@ -53,6 +55,7 @@ pub(crate) mod best_plane;
 mod beyond_curve;
 pub mod case_file;
 mod catalogue;
+mod checked;
 pub(crate) mod command;
 mod expression;
 pub mod field;
@@ -60,6 +63,7 @@ pub mod formula;
 mod formula_keys;
 mod friction_table;
 mod given;
+mod given_error;
 mod given_system;
 pub(crate) mod keys;
 pub mod law_kind;

@@ -5,6 +5,7 @@
 use super::actuator_limits::{excluding, without_limits};
 use super::axis::Axis;
 use super::field::Field;
+use super::given_error::GivenError;
 use super::law_kind::{LawKind, NO_MOTIONS};
 use super::parameter::Parameter;
 use super::search::LIMIT;
@@ -12,7 +13,7 @@ use super::simulation::NOT_IN_MOTIONS;
 use super::source::{OfLinear, OfMargins, OfRoots, Source};
 use super::spec::{SweepSpec, most};
 use super::system::SystemModel;
-use super::values::{GivenError, Setting};
+use super::values::Setting;
 use crate::model::RateAndState;
 use crate::text::SpecError;
 

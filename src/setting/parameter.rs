@@ -509,7 +509,6 @@ catalogue! {
                 help: "σ, viscous part of the friction law, time/length [default: 0]",
             }),
             page: Some(Page::new([0.0, 1.0], [0.0, 0.5])),
-            ..ROW
         };
         /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
         MuPrimeRest = Row {

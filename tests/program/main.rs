@@ -20,6 +20,7 @@ mod curves;
 mod damaged;
 mod export;
 mod flips;
+mod formulas;
 mod manners;
 mod names;
 mod pictures;

@@ -159,7 +159,7 @@ impl Builder {
     pub(crate) fn finish(mut self, last: Operand) -> Option<Formula> {
         let last = match last {
             Operand::Number(value) => self.add(Node::Linear(0.0, value)),
-            node => node,
+            node @ Operand::Node(_) => node,
         };
         let Operand::Node(last) = last else {
             return None;

@@ -1,0 +1,186 @@
+//! Friction laws that are formulas, by the program: in flags, case files and sweeps, and what is
+//! refused.
+
+use serde_json::Value;
+
+use crate::program::{Folder, err, expect, out};
+
+const LAW: &str = "law = \"formula\"\nmu_k = \"mu0 + (mu_s - mu0)*exp(-(v/v_s)^delta) + sigma*v\"\n\
+    mu0 = 0.3\nv_s = 0.2\n";
+
+/// The `point` of some flags as JSON.
+fn point(folder: &Folder, flags: &[&str]) -> Value {
+    let output = folder.run(&[&["point", "--json"], flags].concat());
+    expect(&output, 0, "");
+    serde_json::from_str(&out(&output)).unwrap()
+}
+
+/// The same law by its name and as a formula, and its slope worked out here.
+#[test]
+fn a_formula_says_what_the_law_of_its_form_says() {
+    let folder = Folder::new();
+    let given = [
+        "--v0",
+        "0.15",
+        "--mu0",
+        "0.3",
+        "--v-s",
+        "0.2",
+        "--alpha-n=-2",
+        "--tau",
+        "0.6",
+    ];
+    let slope = |mu: f64, at: f64| (mu - 0.3) * at;
+    let q = 0.15_f64 / 0.2;
+    let by_hand = [
+        (
+            "weakening",
+            "mu0/(1 + v/v_s)",
+            -0.3 / 0.2 / (1.0 + q).powi(2),
+        ),
+        (
+            "stribeck",
+            "mu0 + (mu_s - mu0)*exp(-(v/v_s)^2)",
+            slope(1.0, -2.0 * q / 0.2 * (-q * q).exp()),
+        ),
+        (
+            "hyperbolic",
+            "mu0 + (mu_s - mu0)/cosh(v/v_s)",
+            slope(1.0, -q.tanh() / q.cosh() / 0.2),
+        ),
+    ];
+    for (law, formula, expected) in by_hand {
+        let named = point(&folder, &[&["--friction", law], &given[..]].concat());
+        let formula = point(
+            &folder,
+            &[&["--friction", "formula", "--mu-k", formula], &given[..]].concat(),
+        );
+        for answer in [&named, &formula] {
+            let slope = answer["mu_prime"].as_f64().unwrap();
+            assert!(
+                (slope - expected).abs() < 1e-13,
+                "{law}: {slope} {expected}"
+            );
+        }
+        let [one, other] = [&named, &formula].map(|of| of["abscissa"].as_f64().unwrap());
+        assert!((one - other).abs() < 1e-12, "{law}");
+        assert_eq!(named["n_unstable"], formula["n_unstable"]);
+    }
+}
+
+/// Own parameters are axes, stand in the map with their units, and a cell is asked again by the
+/// command that its point tells.
+#[test]
+fn own_parameters_are_axes_of_maps() {
+    let axes = "fields = [\"n_unstable\", \"abscissa\"]\n[axes]\ndelta = [0.5, 1, 2]\n\
+        sigma = [0, \"100 s/km\"]\ntau = [0.2, 0.6, 1.4]\n[fixed]\nv0 = \"150 mm/s\"\n\
+        alpha_n = -2\n[friction]\nunits = { sigma = \"s/m\" }\n";
+    let folder = Folder::with(&[("map.toml", &(axes.to_owned() + LAW))]);
+    let run = |args: &[&str]| {
+        let output = folder.run(args);
+        expect(&output, 0, "");
+        out(&output)
+    };
+    run(&["run", "map.toml", "-o", "map.h5"]);
+    let csv = run(&["export", "map.h5"]);
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| {
+        let found = rows[0]
+            .iter()
+            .position(|title| title.split_whitespace().next() == Some(name));
+        found.unwrap_or_else(|| panic!("{name} in {:?}", rows[0]))
+    };
+    let [delta, sigma, tau, count] = ["delta", "sigma", "tau", "n_unstable"].map(column);
+    assert_eq!(rows.len(), 1 + 3 * 2 * 3);
+    for row in &rows[1..] {
+        let sets = [
+            format!("delta={}", row[delta]),
+            format!("sigma={}", row[sigma]),
+        ];
+        let answer = point(
+            &folder,
+            &[
+                "--friction",
+                "formula",
+                "--mu-k",
+                "mu0 + (mu_s - mu0)*exp(-(v/v_s)^delta) + sigma*v",
+                "--set",
+                &sets[0],
+                "--set",
+                &sets[1],
+                "--mu0=0.3",
+                "--v-s=0.2",
+                "--v0=0.15",
+                "--alpha-n=-2",
+                "--tau",
+                row[tau],
+            ],
+        );
+        assert_eq!(answer["n_unstable"].to_string(), row[count], "{row:?}");
+    }
+    let sigmas = rows[1..]
+        .iter()
+        .map(|row| row[sigma].parse::<f64>().unwrap());
+    assert_eq!(sigmas.fold(0.0, f64::max), 0.1);
+    let info = run(&["info", "map.h5"]);
+    assert!(info.contains("formula") && info.contains("sigma"), "{info}");
+}
+
+/// Each mistake, with what is said of it.
+#[test]
+fn mistakes_in_formulas_are_told_in_their_place() {
+    let ok = "sigma = 0.1\ndelta = 1.5\n";
+    let with = |law: &str| format!("[axes]\ntau = [1]\nv0 = [0.1, 2]\n[friction]\n{law}");
+    for (law, says) in [
+        (format!("{LAW}{ok}sgima = 1\n"), "did you mean `sigma`?"),
+        (
+            format!("{LAW}delta = 1.5\n"),
+            "sigma is not given: mu_k has it",
+        ),
+        (format!("{LAW}{ok}sigma = 2\n"), "sigma"),
+        (
+            format!("{LAW}{ok}").replace("exp", "exq"),
+            "did you mean `exp`?",
+        ),
+        (
+            format!("{LAW}{ok}").replace("sigma*v", "mass*v"),
+            "mass is reserved",
+        ),
+        (
+            format!("{LAW}{ok}").replace("sigma*v", "min(v, 1)"),
+            "min and max have kinks",
+        ),
+        (
+            format!("{LAW}{ok}").replace("0.1", "-0.2"),
+            "mu_k = -0.1 at the speed 2",
+        ),
+        (
+            format!("{LAW}{ok}").replace("sigma*v", "ln(v)"),
+            "at the speed 0",
+        ),
+        (
+            format!("{LAW}{ok}").replace("sigma*v", "0.2"),
+            "at most mu_s = 1",
+        ),
+        ("law = \"formula\"\nmu0 = 0.3\n".into(), "mu_k is not given"),
+        (
+            format!(
+                "{LAW}{ok}units = {{ sigma = \"s/mm\" }}\n[units]\nforce = \"N\"\nlength = \"m\"\n\
+            time = \"s\"\n"
+            ),
+            "1 s/mm is 1000 m-1 s",
+        ),
+        (
+            format!("{LAW}{ok}units = {{ sgima = \"s/m\" }}\n"),
+            "did you mean `sigma`?",
+        ),
+    ] {
+        let folder = Folder::with(&[("map.toml", &with(&law))]);
+        let output = folder.run(&["plan", "map.toml"]);
+        expect(&output, 2, "");
+        let error = err(&output);
+        let words = error.split_whitespace().filter(|word| *word != "│");
+        let one_line = words.collect::<Vec<_>>().join(" ");
+        assert!(one_line.contains(says), "{law}: {error}");
+    }
+}
