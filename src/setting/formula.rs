@@ -192,11 +192,7 @@ impl GivenFormula {
     /// Gives an own parameter a dimension in these units.
     pub(super) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
         let model = Arc::make_mut(&mut self.model);
-        model.own[own.index] = Arc::new(OwnParameter {
-            unit: units.of(dimension),
-            dimension,
-            ..own.clone()
-        });
+        model.own[own.index] = Arc::new(own.measured(units.of(dimension), dimension));
     }
 
     pub(super) fn get(&self, own: &OwnParameter) -> f64 {

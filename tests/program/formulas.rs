@@ -152,14 +152,14 @@ fn mistakes_in_formulas_are_told_in_their_place() {
         ),
         (
             format!("{LAW}{ok}").replace("0.1", "-0.2"),
-            "mu_k = -0.1 at the speed 2",
+            "at the speed 2 is outside its range",
         ),
         (
-            format!("{LAW}{ok}").replace("sigma*v", "ln(v)"),
+            format!("{LAW}{ok}").replace("sigma*v", "sigma*ln(v)"),
             "at the speed 0",
         ),
         (
-            format!("{LAW}{ok}").replace("sigma*v", "0.2"),
+            format!("{LAW}{ok}").replace("sigma*v", "3*sigma"),
             "at most mu_s = 1",
         ),
         ("law = \"formula\"\nmu0 = 0.3\n".into(), "mu_k is not given"),

@@ -58,12 +58,12 @@ impl Shape {
     /// f and its slope. With an exponent that is not whole it has no value below rest; there it is
     /// that at rest.
     fn value_and_slope(self, q: f64) -> (f64, f64) {
-        let power = |delta: f64| match delta.fract() == 0.0 {
-            true => (q.powi(delta as i32), delta * q.powi(delta as i32 - 1)),
-            false => {
-                let q = q.max(0.0);
-                (q.powf(delta), delta * q.powf(delta - 1.0).min(1e12))
+        let power = |delta: f64| {
+            if delta.fract() == 0.0 {
+                return (q.powi(delta as i32), delta * q.powi(delta as i32 - 1));
             }
+            let q = q.max(0.0);
+            (q.powf(delta), delta * q.powf(delta - 1.0).min(1e12))
         };
         match self {
             Self::Exponential(delta) => {

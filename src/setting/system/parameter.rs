@@ -1,6 +1,7 @@
 //! A parameter of a system.
 
 use crate::setting::parameter::LARGEST;
+use crate::setting::unit::Unit;
 use crate::text::Shown;
 
 /// A parameter that a system file names.
@@ -36,6 +37,22 @@ impl OwnParameter {
             [from, LARGEST] => format!("{} or more, at most 1e12", Shown(from)),
             [from, to] => format!("{} to {}", Shown(from), Shown(to)),
         }
+    }
+
+    /// The same with a unit that has these powers of force, length and time.
+    pub(in crate::setting) fn measured(&self, unit: String, dimension: [i32; 3]) -> Self {
+        Self {
+            unit,
+            dimension,
+            ..self.clone()
+        }
+    }
+
+    /// The same with this unit, of which it is known that it is understood.
+    pub(crate) fn in_unit(&self, unit: &str) -> Self {
+        let known = Unit::read(unit).ok();
+        let dimension = known.map_or([0; 3], |unit| unit.dimension());
+        self.measured(unit.to_owned(), dimension)
     }
 
     /// The ends of its range, as far as it has any.

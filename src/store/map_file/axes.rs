@@ -1,11 +1,13 @@
 //! The axes of a map, and the system whose parameters they may be.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use hdf5::File;
 
 use crate::setting::Parameter;
 use crate::setting::axis::{Axis, MOST_POINTS};
+use crate::setting::formula::GivenFormula;
 use crate::setting::map_names::MOST_AXES;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::SystemModel;
@@ -36,9 +38,18 @@ pub(super) fn read_axes(
 ) -> Result<Vec<MapAxis>, StoreError> {
     let names = text(file, root::AXES)
         .map_err(|_| StoreError::not_a_map(path, "it does not name its axes"))?;
+    let formula = read_formula(file, path)?;
     let mut axes: Vec<MapAxis> = Vec::new();
     for name in names.split_whitespace() {
-        let axis = read_axis(file, system, name).map_err(|why| StoreError::not_a_map(path, why))?;
+        let own = formula.as_ref().and_then(|formula| formula.own_named(name));
+        let axis = match own {
+            Some(own) => read_values(file, Quantity::Own(Arc::clone(own))).map(|axis| MapAxis {
+                parameter: Quantity::Own(Arc::new(own.in_unit(&axis.unit))),
+                ..axis
+            }),
+            None => read_axis(file, system, name),
+        };
+        let axis = axis.map_err(|why| StoreError::not_a_map(path, why))?;
         if axes.iter().any(|other| other.parameter == axis.parameter) {
             let why = format!("it names its axis {name} twice");
             return Err(StoreError::not_a_map(path, why));
@@ -65,13 +76,28 @@ pub(super) fn read_system(file: &File, path: &Path) -> Result<Option<SystemModel
     })
 }
 
+/// Reads the formula of the friction law of a file; none of another law.
+fn read_formula(file: &File, path: &Path) -> Result<Option<GivenFormula>, StoreError> {
+    let Ok(text) = text(file, root::FRICTION_FORMULA) else {
+        return Ok(None);
+    };
+    let read = GivenFormula::read(&text).map(Some);
+    read.map_err(|error| {
+        StoreError::not_a_map(path, format!("its friction law is damaged: {error}"))
+    })
+}
+
 fn read_axis(file: &File, system: Option<&SystemModel>, name: &str) -> Result<MapAxis, String> {
     let unknown = || format!("it has an unknown axis {name}");
     let parameter = match system {
         Some(system) => system.quantity(name),
         None => Parameter::from_name(name).map(Quantity::from),
     };
-    let parameter = parameter.ok_or_else(unknown)?;
+    read_values(file, parameter.ok_or_else(unknown)?)
+}
+
+fn read_values(file: &File, parameter: Quantity) -> Result<MapAxis, String> {
+    let name = parameter.name();
     let read = || -> hdf5::Result<(Vec<f64>, String)> {
         let dataset = open::dataset(file, name)?;
         match dataset.shape()[..] {
