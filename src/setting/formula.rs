@@ -10,7 +10,6 @@ use super::map_names;
 use super::parameter::{Group, LARGEST, Parameter};
 use super::system::parameter::OwnParameter;
 use super::units::Units;
-use super::values::Setting;
 use crate::model::elementary::{atan, cos, cosh, ln, sin, sinh, tanh};
 use crate::model::law::formula::{Builder, Node, Operand};
 use crate::model::{FrictionLaw, ModelError};
@@ -217,18 +216,18 @@ impl GivenFormula {
         )))
     }
 
-    /// The law with the parameters of a setting.
-    pub(super) fn at(&self, setting: &Setting) -> Result<FrictionLaw, ModelError> {
+    /// The law; `known` tells the parameters that other laws have too.
+    pub(super) fn at(&self, known: impl Fn(Parameter) -> f64) -> Result<FrictionLaw, ModelError> {
         let mut make = Builder::default();
         let mut stack = Vec::new();
         for op in self.model.tape.ops() {
-            let result = self.apply(*op, &mut make, &mut stack, setting);
+            let result = self.apply(*op, &mut make, &mut stack, &known);
             stack.push(result);
         }
         let last = stack.pop().unwrap_or(Operand::Number(f64::NAN));
         let formula = make.finish(last);
         let formula = formula.ok_or(ModelError::of_law("a formula of at most 64 operations"))?;
-        FrictionLaw::formula(formula, setting.get(Parameter::MuS))
+        FrictionLaw::formula(formula, known(Parameter::MuS))
     }
 
     /// The result of one operation on the top of the stack.
@@ -237,14 +236,14 @@ impl GivenFormula {
         op: Op,
         make: &mut Builder,
         stack: &mut Vec<Operand>,
-        setting: &Setting,
+        known: impl Fn(Parameter) -> f64,
     ) -> Operand {
         let mut next = || stack.pop().unwrap_or(Operand::Number(f64::NAN));
         match op {
             Op::Number(value) => Operand::Number(value),
             Op::Value(0) => make.speed(),
             Op::Value(index) => Operand::Number(match self.model.names[usize::from(index) - 1] {
-                Name::Known(parameter) => setting.get(parameter),
+                Name::Known(parameter) => known(parameter),
                 Name::Own(own) => self.values[own],
             }),
             Op::Negate => {

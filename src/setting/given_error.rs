@@ -1,7 +1,10 @@
-//! Why given parameters do not make a setting, in words.
+//! Whether given parameters make a setting, and why they do not, in words.
+
+use std::cmp::Ordering;
 
 use super::law_kind::LawKind;
 use super::parameter::Parameter;
+use super::values::Setting;
 
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +86,45 @@ impl GivenError {
                     "give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not both"
                 )
             }
+        }
+    }
+}
+
+impl Setting {
+    /// Checks that every parameter that a setting with this law needs is given, and none that would
+    /// be ignored. The start of a motion is not checked: linear stability does not depend on it.
+    ///
+    /// # Errors
+    /// Names the first parameter that is missing or unused.
+    pub fn check_given(
+        law: Option<&LawKind>,
+        given: impl Fn(Parameter) -> bool,
+    ) -> Result<(), GivenError> {
+        for parameter in Parameter::ALL.into_iter().filter(|p| !p.of_start()) {
+            let taken = Self::takes(law, parameter);
+            if given(parameter) && !taken {
+                return Err(GivenError::Unused(parameter));
+            }
+            let of_law = law.is_some_and(|law| law.parameters().contains(&parameter));
+            let needed = taken && !of_law && parameter.default_value().is_none();
+            if needed && !given(parameter) {
+                return Err(GivenError::Missing(parameter));
+            }
+        }
+        law.map_or(Ok(()), |law| Self::check_law_given(law, given))
+    }
+
+    /// Checks that as many parameters of the law are given as it needs.
+    fn check_law_given(law: &LawKind, given: impl Fn(Parameter) -> bool) -> Result<(), GivenError> {
+        let parameters = law.parameters();
+        let there = parameters.iter().filter(|p| given(**p)).count();
+        match (there.cmp(&law.needed()), parameters) {
+            (Ordering::Less, _) => {
+                let missing = parameters.iter().find(|p| !given(**p));
+                missing.map_or(Ok(()), |p| Err(GivenError::Missing(*p)))
+            }
+            (Ordering::Greater, [.., last]) => Err(GivenError::Follows(*last)),
+            _ => Ok(()),
         }
     }
 }

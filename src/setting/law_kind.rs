@@ -213,7 +213,7 @@ impl LawKind {
                 Made::WithState(_) => Err(ModelError::of_law(OF_VELOCITY)),
             },
             Self::Table(table) => FrictionLaw::table(table.clone(), setting.get(Parameter::MuS)),
-            Self::Formula(formula) => formula.at(setting),
+            Self::Formula(formula) => formula.at(|parameter| setting.get(parameter)),
         }
     }
 }

@@ -16,7 +16,7 @@
 //! - `formula_keys`: the keys of `[friction]` that belong to a formula
 //! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
-//! - `given_error`: why given parameters do not make a setting, in words
+//! - `given_error`: whether given parameters make a setting, and why not, in words
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,

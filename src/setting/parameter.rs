@@ -265,8 +265,8 @@ catalogue! {
             group: Group::Sliding,
             flag: Some(Flag {
                 value: "M",
-                help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]; with \
-                    --friction formula an expression in the speed v",
+                help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]; \
+                    with --friction formula an expression in the speed v",
             }),
             page: Some(Page::new([0.05, 2.0], [0.05, 2.0]).folded(Folded::Model)),
             ..ROW

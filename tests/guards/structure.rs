@@ -203,7 +203,7 @@ fn libraries_stay_in_their_rooms() {
         ("axum", "src/serve"),
         ("clap", "src/cli"),
         ("miette", "src/cli"),
-        ("winnow", "src/setting/system/expression.rs"),
+        ("winnow", "src/setting/expression/reader.rs"),
     ] {
         let mut seen = false;
         for path in sources(Path::new("src")) {

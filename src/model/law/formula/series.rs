@@ -14,7 +14,7 @@ use crate::model::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
 const NEAR_REST: f64 = 1e-10;
 /// The shortest step from rest, in the motion's unit of time.
 const SHORTEST: f64 = 1e-13;
-/// Accelerations below this from rest may be noise; a step lasts so many times until it is outgrown.
+/// Accelerations below this from rest may be noise; a step lasts some times until it is outgrown.
 const NOISE: f64 = 1e-7;
 const OUTLASTS: f64 = 8.0;
 /// A step of powers changes their arguments by no more than this part of them.
