@@ -15,7 +15,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    const ONE: Self = Self::new(1, 0);
+    /// The factor 1.
+    pub(super) const ONE: Self = Self::new(1, 0);
 
     const fn new(above: u128, tens: i32) -> Self {
         Self {
@@ -48,8 +49,9 @@ impl Scale {
     }
 
     /// A decimal number times the factor. Its digits are multiplied as a whole number and its
-    /// decimal point is shifted: 2.4 thousandths are the number 0.0024, 12 inches 0.3048 m.
-    fn of(self, decimal: &str) -> Option<f64> {
+    /// decimal point is shifted: 2.4 thousandths are the number 0.0024, 12 inches 0.3048 m. None
+    /// for an exponent beyond all numbers.
+    pub(super) fn of(self, decimal: &str) -> Option<f64> {
         let (digits, exponent) = match decimal.split_once(['e', 'E']) {
             Some((digits, exponent)) => (digits, exponent.parse().ok()?),
             None => (decimal, 0_i32),
@@ -99,13 +101,14 @@ const fn known(
 }
 
 /// The known units. Inch, foot, pound and pound-force are these numbers by definition.
-const KNOWN: [Known; 14] = [
+const KNOWN: [Known; 15] = [
     known("N", [1, 0, 0], Scale::ONE, &["n", "u", "m", "k", "M"]),
-    known("m", [0, 1, 0], Scale::ONE, &["n", "u", "m", "c", "k"]),
+    known("m", [0, 1, 0], Scale::ONE, &["n", "u", "m", "c", "d", "k"]),
     known("s", [0, 0, 1], Scale::ONE, &["n", "u", "m"]),
     known("kg", [1, -1, 2], Scale::ONE, &[]),
     known("g", [1, -1, 2], Scale::new(1, -3), &["m"]),
     known("t", [1, -1, 2], Scale::new(1, 3), &[]),
+    known("sec", [0, 0, 1], Scale::ONE, &[]),
     known("min", [0, 0, 1], Scale::new(6, 1), &[]),
     known("h", [0, 0, 1], Scale::new(36, 2), &[]),
     known("Hz", [0, 0, -1], Scale::ONE, &["k"]),
@@ -117,11 +120,12 @@ const KNOWN: [Known; 14] = [
 ];
 
 /// Prefixes with their powers of ten.
-const PREFIXES: [(&str, i32); 6] = [
+const PREFIXES: [(&str, i32); 7] = [
     ("n", -9),
     ("u", -6),
     ("m", -3),
     ("c", -2),
+    ("d", -1),
     ("k", 3),
     ("M", 6),
 ];
@@ -201,21 +205,34 @@ impl Unit {
     /// # Errors
     /// When `units` has no known units to turn it into, or the number is too large.
     pub(super) fn value(&self, decimal: &str, units: &Units) -> Result<f64, SpecError> {
-        let scale = match self.dimension {
-            [0, 0, 0] => Some(self.scale),
-            dimension => {
-                let bases = units.bases()?.into_iter().zip(dimension);
-                bases
-                    .into_iter()
-                    .try_fold(self.scale, |scale, (base, power)| {
-                        scale.times(base.scale.power(-power)?)
-                    })
-            }
-        };
-        let value = scale.and_then(|scale| scale.of(decimal));
+        if self.dimension != [0; 3] {
+            units.check_known()?;
+        }
+        let value = self.scale_in(units)?.of(decimal);
         value
             .filter(|value| value.is_finite())
             .ok_or_else(|| SpecError::whole(format!("{decimal} {self} is too large a number")))
+    }
+
+    /// The factor from this unit to that of `units`.
+    ///
+    /// # Errors
+    /// When one of `units` that it needs is not known.
+    pub(super) fn scale_in(&self, units: &Units) -> Result<Scale, SpecError> {
+        let mut scale = Some(self.scale);
+        let powers = self.dimension.into_iter().enumerate();
+        for (axis, power) in powers.filter(|(_, power)| *power != 0) {
+            let base = units.base(axis)?.scale.power(-power);
+            scale = scale.zip(base).and_then(|(scale, base)| scale.times(base));
+        }
+        scale.ok_or_else(|| SpecError::whole(format!("{self} is too large or too small a unit")))
+    }
+
+    /// The factor from this unit to another; none where both are not of one dimension.
+    pub(super) fn scale_to(&self, other: &Self) -> Option<Scale> {
+        let same = self.dimension == other.dimension;
+        let back = other.scale.power(-1).filter(|_| same)?;
+        self.scale.times(back)
     }
 
     /// The known word, with its power, at the beginning of `rest`, and what stands behind it.
@@ -391,6 +408,8 @@ mod tests {
             ("0.3", "ms", 0.0003),
             ("90", "km/h", 25.0),
             ("0.1", "min", 6.0),
+            ("7", "dm", 0.7),
+            ("3", "sec", 3.0),
             ("12", "in", 0.3048),
             ("1", "lb", 0.453_592_37),
             ("-.5", "min", -30.0),
@@ -426,7 +445,7 @@ mod tests {
     fn what_is_no_unit_is_told() {
         for (text, says) in [
             ("kgg", "did you mean `kg`?"),
-            ("sec", "known: N, nN,"),
+            ("second", "known: N, nN,"),
             ("kg/m s", "above it first"),
             ("m^", "written like"),
             ("m^x", "written like"),
@@ -446,6 +465,18 @@ mod tests {
         }
         let huge = Unit::read("km").unwrap().value("1e307", &Units::si());
         assert!(huge.unwrap_err().message.contains("too large"));
+    }
+
+    #[test]
+    fn units_of_one_dimension_are_turned_into_one_another() {
+        let turned = |number: &str, from: &str, to: &str| {
+            let [from, to] = [from, to].map(|unit| Unit::read(unit).unwrap());
+            from.scale_to(&to)?.of(number)
+        };
+        assert_eq!(turned("70", "mN", "N"), Some(0.07));
+        assert_eq!(turned("2.5", "lbf", "lbf"), Some(2.5));
+        assert_eq!(turned("1", "ft", "in"), Some(12.0));
+        assert_eq!(turned("1", "kg", "N"), None);
     }
 
     proptest! {

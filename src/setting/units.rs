@@ -68,31 +68,35 @@ impl Units {
         )
     }
 
-    /// The units of force, length and time, where they are known units.
+    /// Checks that the units of force, length and time are known ones.
     ///
     /// # Errors
     /// Says why numbers with units cannot be turned into these.
-    pub(super) fn bases(&self) -> Result<[Unit; 3], SpecError> {
+    pub(super) fn check_known(&self) -> Result<(), SpecError> {
+        (0..3).try_for_each(|axis| self.base(axis).map(drop))
+    }
+
+    /// The unit of force (0), length (1) or time (2).
+    ///
+    /// # Errors
+    /// When there is none, or it is not known.
+    pub(super) fn base(&self, axis: usize) -> Result<Unit, SpecError> {
         let Some(names) = &self.force_length_time else {
             let message = "a number has a unit, but all numbers here are dimensionless";
             let help =
                 "leave the unit out, or declare units: SI, or those of force, length and time";
             return Err(SpecError::whole(message).help(help));
         };
-        let base = |axis: usize| {
-            let mut dimension = [0; 3];
-            dimension[axis] = 1;
-            let unit = Unit::read(&names[axis]).ok();
-            let unit = unit.filter(|unit| unit.dimension() == dimension);
-            unit.ok_or_else(|| {
-                let (name, what) = (&names[axis], described(dimension));
-                let message =
-                    format!("the declared unit \"{name}\" is not known as a unit of {what}");
-                SpecError::whole(message)
-                    .help("leave the unit behind the number out, or declare units like N, mm and s")
-            })
-        };
-        Ok([base(0)?, base(1)?, base(2)?])
+        let mut dimension = [0; 3];
+        dimension[axis] = 1;
+        let unit = Unit::read(&names[axis]).ok();
+        let unit = unit.filter(|unit| unit.dimension() == dimension);
+        unit.ok_or_else(|| {
+            let (name, what) = (&names[axis], described(dimension));
+            let message = format!("the declared unit \"{name}\" is not known as a unit of {what}");
+            SpecError::whole(message)
+                .help("leave the unit behind the number out, or declare units like N, mm and s")
+        })
     }
 
     /// Units from a text: the name of a preset, or the units of force, length and time separated by

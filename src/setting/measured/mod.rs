@@ -24,6 +24,7 @@ use points::{Origin, Reading, mean, near, points};
 use sheet::{Row, Sheet};
 
 use super::parameter::Parameter;
+use super::unit::{Scale, Unit};
 use super::units::Units;
 use crate::model::table::{TableColumn, TableError};
 use crate::model::{FrictionLaw, Table};
@@ -83,9 +84,13 @@ impl Measured {
             options,
             chosen,
         };
-        let (factor, of_unit) = reader.speed_factor()?;
-        remarks.extend(of_unit);
-        let (readings, left_out) = reader.readings(factor)?;
+        let (speed, of_speed) = reader.speed_scale()?;
+        remarks.extend(of_speed);
+        reader.check_load()?;
+        let (force, of_force) = reader.force_scale()?;
+        remarks.extend(of_force);
+        let mark = reader.decimal_mark()?;
+        let (readings, left_out) = reader.readings(&Scales { mark, speed, force })?;
         remarks.extend(left_out);
         let (points, of_points) = points(readings, &names[1])?;
         remarks.extend(of_points);
@@ -168,6 +173,15 @@ fn no_numbers(sheet: &Sheet) -> SpecError {
     }
 }
 
+/// How the numbers of cells are read.
+struct Scales {
+    mark: DecimalMark,
+    /// From the unit of the speeds to that of the setting.
+    speed: Scale,
+    /// From the unit of the forces to that of the load.
+    force: Scale,
+}
+
 /// Reads the chosen columns of a sheet.
 struct Reader<'s> {
     sheet: &'s Sheet<'s>,
@@ -177,42 +191,39 @@ struct Reader<'s> {
 }
 
 impl Reader<'_> {
-    /// The factor of the speeds as a fraction, and what is told of it.
-    fn speed_factor(&self) -> Result<((f64, f64), Option<Remark>), SpecError> {
+    /// The factor of the speeds, and what is told of it.
+    fn speed_scale(&self) -> Result<(Scale, Option<Remark>), SpecError> {
         let (spoken, units) = (self.options.spoken, &self.options.units);
         if let Some(unit) = &self.options.speed_unit {
-            let factor = unit.factor(units);
-            let factor = factor
+            let scale = unit.scale_in(units);
+            let scale = scale
                 .map_err(|why| SpecError::whole(why).help(format!("say {}", spoken.units())))?;
-            return Ok((factor, None));
+            return Ok((scale, None));
         }
         let Some(unit) = self.titles.unit(self.sheet, self.chosen.speed) else {
-            return Ok(((1.0, 1.0), None));
+            return Ok((Scale::ONE, None));
         };
         if units.dimensionless() {
             let (unit, say) = (unit.to_owned(), spoken.units());
-            return Ok(((1.0, 1.0), Some(Remark::NoUnits { unit, say })));
+            return Ok((Scale::ONE, Some(Remark::NoUnits { unit, say })));
         }
-        let to = units.of_parameter(Parameter::V0);
-        let (from, factor) = SpeedUnit::read(unit)
-            .and_then(|unit| Ok((unit.name().to_owned(), unit.factor(units)?)))
+        let scale = SpeedUnit::read(unit)
+            .and_then(|unit| unit.scale_in(units))
             .map_err(|why| {
                 let name = self.titles.name(self.chosen.speed);
                 SpecError::whole(format!("{name}: {why}"))
                     .help(format!("say the unit: {}", spoken.speed_unit("mm/s")))
             })?;
-        let told = (factor != (1.0, 1.0)).then_some(Remark::Converted { from, to });
-        Ok((factor, told))
+        let to = units.of_parameter(Parameter::V0);
+        Ok((scale, converted("speeds", scale, [unit, &to])))
     }
 
     /// Rows of numbers, with speeds in units of the setting, and what is told of other rows.
-    fn readings(&self, factor: (f64, f64)) -> Result<(Vec<Reading>, Option<Remark>), SpecError> {
-        self.check_forces()?;
-        let mark = self.decimal_mark()?;
+    fn readings(&self, scales: &Scales) -> Result<(Vec<Reading>, Option<Remark>), SpecError> {
         let mut readings = Vec::new();
         let mut left_out: Option<(usize, usize)> = None;
         for row in self.sheet.data() {
-            match self.reading(row, mark, factor)? {
+            match self.reading(row, scales)? {
                 Some(reading) => readings.push(reading),
                 None => left_out.get_or_insert((0, row.line)).0 += 1,
             }
@@ -236,26 +247,22 @@ impl Reader<'_> {
     }
 
     /// The numbers of a row; none where it is not all numbers.
-    fn reading(
-        &self,
-        row: &Row,
-        mark: DecimalMark,
-        (up, down): (f64, f64),
-    ) -> Result<Option<Reading>, SpecError> {
+    fn reading(&self, row: &Row, scales: &Scales) -> Result<Option<Reading>, SpecError> {
         let Chosen {
             speed,
             friction,
             load,
             ..
         } = self.chosen;
-        let number = |column: usize| mark.number(row.cell(column));
-        let (Some(speed), Some(force)) = (number(speed), number(friction)) else {
+        let number = |column: usize, scale: Scale| scales.mark.scaled(row.cell(column), scale);
+        let speed = number(speed, scales.speed);
+        let (Some(speed), Some(force)) = (speed, number(friction, scales.force)) else {
             return Ok(None);
         };
         let load = match load {
             None => 1.0,
             Some(Load::Fixed(load)) => load,
-            Some(Load::Column(column)) => match number(column) {
+            Some(Load::Column(column)) => match number(column, Scale::ONE) {
                 None => return Ok(None),
                 Some(load) if load > 0.0 => load,
                 Some(_) => {
@@ -268,7 +275,7 @@ impl Reader<'_> {
             },
         };
         Ok(Some(Reading {
-            speed: speed * up / down,
+            speed,
             mu_k: force / load,
             origin: Origin {
                 line: row.line,
@@ -278,28 +285,54 @@ impl Reader<'_> {
         }))
     }
 
-    /// Refuses a load out of its range, and a force and a load in units that are known to differ.
-    fn check_forces(&self) -> Result<(), SpecError> {
-        let unit = |column: usize| self.titles.unit(self.sheet, column);
-        let Some(load) = self.chosen.load else {
-            return Ok(());
-        };
-        let of_load = match load {
-            Load::Column(column) => unit(column),
-            Load::Fixed(load) => {
+    /// Refuses a load out of its range.
+    fn check_load(&self) -> Result<(), SpecError> {
+        match self.chosen.load {
+            Some(Load::Fixed(load)) => {
                 let checked = Parameter::NormalLoad.check(load);
                 checked.map_err(|error| SpecError::whole(error.to_string()))?;
-                self.options.units.force()
-            }
-        };
-        match (unit(self.chosen.friction), of_load) {
-            (Some(force), Some(load)) if force != load => {
-                let message = format!("the force is in {force}, and the load in {load}");
-                Err(SpecError::whole(message).help("give both in one unit"))
+                Ok(())
             }
             _ => Ok(()),
         }
     }
+
+    /// The factor from the unit of the forces to that of the load, where both are known, and what
+    /// is told of it.
+    fn force_scale(&self) -> Result<(Scale, Option<Remark>), SpecError> {
+        let unit = |column: usize| self.titles.unit(self.sheet, column);
+        let of_load = self.chosen.load.and_then(|load| match load {
+            Load::Column(column) => unit(column),
+            Load::Fixed(_) => self.options.units.force(),
+        });
+        match unit(self.chosen.friction).zip(of_load) {
+            Some((force, load)) if force != load => {
+                let scale = scale_of_force(force, load)?;
+                Ok((scale, converted("forces", scale, [force, load])))
+            }
+            _ => Ok((Scale::ONE, None)),
+        }
+    }
+}
+
+/// The factor from one unit of force to another.
+fn scale_of_force(force: &str, load: &str) -> Result<Scale, SpecError> {
+    let read = |unit: &str| {
+        let unit = Unit::read(unit).ok();
+        unit.filter(|unit| unit.dimension() == Parameter::NormalLoad.dimension())
+    };
+    let units = read(force).zip(read(load));
+    let scale = units.and_then(|(force, load)| force.scale_to(&load));
+    scale.ok_or_else(|| {
+        SpecError::whole(format!("the force is in {force}, and the load in {load}"))
+            .help("give both in one unit, or in known units of force: N, mN, kN, lbf")
+    })
+}
+
+/// What is told of numbers that are turned from one unit into another.
+fn converted(what: &'static str, scale: Scale, units: [&str; 2]) -> Option<Remark> {
+    let [from, to] = units.map(str::to_owned);
+    (scale != Scale::ONE).then_some(Remark::Converted { what, from, to })
 }
 
 impl Units {

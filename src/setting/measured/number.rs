@@ -1,5 +1,7 @@
 //! Numbers in cells, with a decimal point or a decimal comma: which of both, the whole text tells.
 
+use crate::setting::unit::Scale;
+
 /// How to write numbers that are understood in one way only.
 pub(super) const PLAIN: &str = "write all numbers with a decimal point, or all with a decimal \
     comma and columns separated by `;` or tabs; none with separators of thousands, 1000 and not \
@@ -22,17 +24,26 @@ impl DecimalMark {
 
     /// The number of a cell; none where it is no number with this mark.
     pub(super) fn number(self, cell: &str) -> Option<f64> {
+        self.plain(cell)?.parse().ok()
+    }
+
+    /// The number of a cell times a factor, rounded once.
+    pub(super) fn scaled(self, cell: &str, scale: Scale) -> Option<f64> {
+        let plain = self.plain(cell)?;
+        let number = plain.parse().ok()?;
+        // With an exponent beyond all numbers it is 0 or infinite in any unit.
+        Some(scale.of(&plain).unwrap_or(number))
+    }
+
+    /// A cell with a decimal point; none where it has other marks than those of numbers.
+    fn plain(self, cell: &str) -> Option<String> {
         let plain = |c: char| match c {
             '−' => Some('-'),
             c if c == self.char() => Some('.'),
             '0'..='9' | '+' | '-' | 'e' | 'E' => Some(c),
             _ => None,
         };
-        cell.chars()
-            .map(plain)
-            .collect::<Option<String>>()?
-            .parse()
-            .ok()
+        cell.chars().map(plain).collect()
     }
 
     /// The mark of these cells, each with its place.
@@ -110,6 +121,8 @@ fn may_be_thousands(cell: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting::unit::Unit;
+    use crate::setting::units::Units;
 
     fn mark(cells: &[&str]) -> Result<DecimalMark, String> {
         let cells = cells.iter().enumerate().map(|(at, cell)| (*cell, at));
@@ -131,6 +144,23 @@ mod tests {
         assert_eq!(DecimalMark::Comma.number("−1,5"), Some(-1.5));
         assert_eq!(DecimalMark::Comma.number("1.5"), None);
         assert_eq!(DecimalMark::Point.number("1,5"), None);
+    }
+
+    #[test]
+    fn numbers_are_scaled() {
+        let thousandth = Unit::read("mm").unwrap().scale_in(&Units::si()).unwrap();
+        for (cell, number) in [
+            ("−2,4", -0.0024),
+            ("+,7e1", 0.007),
+            ("5,", 0.005),
+            ("1e99999999999", f64::INFINITY),
+            ("1e-99999999999", 0.0),
+        ] {
+            let scaled = DecimalMark::Comma.scaled(cell, thousandth);
+            assert_eq!(scaled, Some(number), "{cell}");
+        }
+        assert_eq!(DecimalMark::Point.scaled("1,5", Scale::ONE), None);
+        assert_eq!(DecimalMark::Point.scaled("e", Scale::ONE), None);
     }
 
     #[test]

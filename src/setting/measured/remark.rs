@@ -31,11 +31,13 @@ pub enum Remark {
         /// speeds are common to both.
         excess: Option<f64>,
     },
-    /// Speeds were converted from the unit of their title.
+    /// Numbers were converted from the unit of their title.
     Converted {
+        /// What they are: speeds or forces.
+        what: &'static str,
         /// That unit.
         from: String,
-        /// The unit of the setting.
+        /// The unit of the setting, or that of the load.
         to: String,
     },
     /// Speeds have a unit by their title, but the setting has none.
@@ -87,10 +89,10 @@ impl fmt::Display for Remark {
                     Some((part, false)) => write!(f, "mu_k is {part} % higher there on average"),
                 }
             }
-            Self::Converted { from, to } => {
+            Self::Converted { what, from, to } => {
                 write!(
                     f,
-                    "speeds are in {from} by their title, and turned into {to}"
+                    "{what} are in {from} by their title, and turned into {to}"
                 )
             }
             Self::NoUnits { unit, say } => write!(

@@ -270,18 +270,33 @@ fn mistakes_are_pointed_at_with_advice() {
 }
 
 #[test]
-fn forces_and_loads_have_one_unit() {
+fn forces_are_turned_into_the_unit_of_the_load() {
     let of = |text: &str| {
         let options = CurveOptions {
             normal_load: Some(2.0),
             units: Units::preset("SI").unwrap(),
             ..options("")
         };
-        Measured::read(text, &options)
+        Measured::read(text, &options).map(|curve| {
+            let remarks: Vec<String> = curve.remarks.iter().map(Remark::to_string).collect();
+            (curve.points[0].mu_k, remarks.join("; "))
+        })
     };
-    assert!(of("v,F (N)\n1,1\n2,1\n").is_ok());
-    let error = of("v,F (mN)\n1,1\n2,1\n").unwrap_err();
-    assert_eq!(error.message, "the force is in mN, and the load in N");
-    assert!(of("v,F (mN),load (N)\n1,1,1\n2,1,1\n").is_err());
-    assert!(of("v,F (mN),load (mN)\n1,1,1\n2,1,1\n").is_ok());
+    let milli = "forces are in mN by their title, and turned into N";
+    for (text, mu_k, told) in [
+        ("v,F (N)\n1,1\n2,1\n", 0.5, ""),
+        ("v,F (mN)\n1,700\n2,1\n", 0.35, milli),
+        ("v,F (mN),load (N)\n1,700,2\n2,1,1\n", 0.35, milli),
+        ("v,F (mN),load (mN)\n1,1,2\n2,1,1\n", 0.5, ""),
+        ("v,F (V),load (V)\n1,1,2\n2,1,1\n", 0.5, ""),
+        ("v,F,load (V)\n1,1,2\n2,1,1\n", 0.5, ""),
+        ("v,mu (V)\n1,0.5\n2,0.5\n", 0.5, ""),
+    ] {
+        assert_eq!(of(text), Ok((mu_k, told.to_owned())), "{text}");
+    }
+    for text in ["v,F (V)\n1,1\n2,1\n", "v,F (N),load (kg)\n1,1,1\n2,1,1\n"] {
+        let error = of(text).unwrap_err();
+        assert!(error.message.starts_with("the force is in "), "{error}");
+        assert!(error.help.unwrap().starts_with("give both in one unit"));
+    }
 }
