@@ -4,12 +4,14 @@
 
 use std::ops::Range;
 
+use super::amount::units_of;
 use super::friction_table::PAIRS;
 use super::keys::{CURVE, names};
 use super::measured::{Columns, CurveOptions, Measured, SpeedUnit, Spoken};
 use super::parameter::Parameter;
 use super::system::{SystemModel, shipped};
-use super::units::read_units;
+use super::units::Units;
+use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// A text in which the names of other files are replaced by their contents.
@@ -221,13 +223,10 @@ impl<'t> CurveKeys<'t> {
     /// The keys of an entry: the name of a file, or a table. The load is that of `[fixed]` unless
     /// it is given.
     fn of(entry: &Entry<'t>, all: &[Entry<'t>]) -> Result<Self, SpecError> {
-        let units = all.iter().find(|entry| entry.key == "units");
+        let units = units_beside_curve(all);
         let mut options = CurveOptions {
-            normal_load: fixed_load(all),
-            // Units that are not understood are reported by their reader.
-            units: units
-                .and_then(|units| read_units(units).ok())
-                .unwrap_or_default(),
+            normal_load: fixed_load(all, &units),
+            units: units.clone(),
             spoken: Spoken::Keys,
             ..CurveOptions::default()
         };
@@ -242,7 +241,8 @@ impl<'t> CurveKeys<'t> {
             .unwrap_or_default();
         options.speed_unit = keys.take("speed_unit", |entry| read_as(entry, SpeedUnit::read));
         let load = keys.take("normal_load", |entry| {
-            let checked = Parameter::NormalLoad.check(entry.number()?);
+            let load = Parameter::NormalLoad;
+            let checked = load.check(units.number(entry, load.dimension())?);
             checked.map_err(|error| SpecError::at(entry.span.clone(), error.to_string()))
         });
         options.normal_load = load.or(options.normal_load);
@@ -261,15 +261,22 @@ impl<'t> CurveKeys<'t> {
     }
 }
 
+/// The units of the file, whatever its curve says: nothing of that is left in the text that is read.
+fn units_beside_curve(all: &[Entry]) -> Units {
+    let others = all.iter().filter(|entry| entry.key != "friction");
+    units_of(&mut Document::of(others.cloned().collect(), ["units"]))
+}
+
 /// The load in `[fixed]`, if it is there.
-fn fixed_load(all: &[Entry]) -> Option<f64> {
+fn fixed_load(all: &[Entry], units: &Units) -> Option<f64> {
     let fixed = all
         .iter()
         .find(|entry| entry.key == "fixed")?
         .table()
         .ok()?;
-    let name = Parameter::NormalLoad.name();
-    fixed.iter().find(|entry| entry.key == name)?.number().ok()
+    let load = Parameter::NormalLoad;
+    let mut given = fixed.iter().filter(|entry| entry.key == load.name());
+    units.number(given.next()?, load.dimension()).ok()
 }
 
 fn string<'t>(entry: &Entry<'t>) -> Result<Entry<'t>, SpecError> {
