@@ -79,6 +79,8 @@ pub struct KnownLaw {
     pub formula: Option<&'static str>,
     /// The parameters that describe it, besides μ_S.
     pub parameters: Vec<&'static str>,
+    /// Those that need not be given, besides μ_S.
+    pub optional: Vec<&'static str>,
     /// How many of them have to be given.
     pub needed: usize,
     /// Whether motions are followed under it.
@@ -111,21 +113,22 @@ pub struct KnownField {
 }
 
 impl Known {
-    /// Everything.
+    /// Everything. A law that is a formula has no parameters before it is written.
     #[must_use]
     pub fn all() -> Self {
         let formulas = NamedLaw::all().iter().map(KnownLaw::of);
-        let more = LawKind::MORE.map(|name| KnownLaw {
-            name,
+        let table = KnownLaw {
+            name: LawKind::TABLE,
             formula: None,
             parameters: Vec::new(),
+            optional: Vec::new(),
             needed: 0,
             motions: true,
-        });
+        };
         Self {
             version: crate::VERSION,
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
-            laws: formulas.chain(more).collect(),
+            laws: formulas.chain([table]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
         }
     }
@@ -169,10 +172,12 @@ impl KnownPage {
 impl KnownLaw {
     fn of(named: &'static NamedLaw) -> Self {
         let law = LawKind::Named(named);
+        let optional = law.optional().iter().filter(|p| **p != Parameter::MuS);
         Self {
             name: named.name(),
             formula: Some(named.formula()),
             parameters: law.parameters().iter().map(|p| p.name()).collect(),
+            optional: optional.map(|p| p.name()).collect(),
             needed: law.needed(),
             motions: !law.has_state(),
         }

@@ -97,7 +97,7 @@ impl LawKind {
     /// The name of [`LawKind::Formula`].
     pub const FORMULA: &str = "formula";
     /// The names of the laws that more than parameters describe.
-    pub(crate) const MORE: [&str; 2] = [Self::TABLE, Self::FORMULA];
+    const MORE: [&str; 2] = [Self::TABLE, Self::FORMULA];
 
     /// The law of this name that parameters alone describe.
     ///

@@ -5,9 +5,8 @@ import { GAINS } from "./catalogue.js";
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
   // Of parameters that say the same, the page offers as many as a law needs.
-  const described = (catalogue.law(state.law)?.parameters ?? []).filter(
-    (name) => catalogue.about(name).page,
-  );
+  const { parameters = [], optional = [] } = catalogue.law(state.law) ?? {};
+  const described = [...parameters, ...optional].filter((name) => catalogue.about(name).page);
   const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
   const folded = ["feedback", "model"].flatMap((box) => catalogue.folded(box));
   return [...sliding, ...GAINS[state.control], "tau", ...folded];
