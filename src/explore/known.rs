@@ -79,10 +79,10 @@ pub struct KnownLaw {
     pub formula: Option<&'static str>,
     /// The parameters that describe it, besides μ_S.
     pub parameters: Vec<&'static str>,
-    /// Those that need not be given, besides μ_S.
-    pub optional: Vec<&'static str>,
     /// How many of them have to be given.
     pub needed: usize,
+    /// Those that need not be given, besides μ_S.
+    pub optional: Vec<&'static str>,
     /// Whether motions are followed under it.
     pub motions: bool,
 }

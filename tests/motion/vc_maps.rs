@@ -332,7 +332,10 @@ fn the_slope_at_rest_stands_for_v_s_or_mu0() {
     let folder = Folder::new();
     let said = ["--v-s=0.25", "--mu-prime-rest=-2"].map(|flag| {
         let start = ["vc", "--friction=weakening", "--mu0=0.5", "--alpha-n=-8"];
-        out(&folder.run(&[&start[..], &["--tau=0.5", flag]].concat()))
+        let told = out(&folder.run(&[&start[..], &["--tau=0.5", flag]].concat()));
+        let (inputs, answer) = told.split_once('\n').unwrap();
+        assert!(inputs.starts_with("inputs: "), "{inputs}");
+        answer.to_owned()
     });
     assert!(!said[0].is_empty() && said[0] == said[1]);
 }

@@ -238,7 +238,7 @@ fn mistakes_of_units_in_files_are_pointed_at() {
             "v0 = \"fast\"",
             "or a number and its unit, such as \"1.5 mm/s\"",
         ),
-        ("v0 = \"3 mm/sec\"", "no unit \"sec\" is known here"),
+        ("v0 = \"3 mm/second\"", "no unit \"second\" is known here"),
         ("v0 = \"3 kg/m s\"", "can be read in two ways"),
         ("mu_k = \"3 m\"", "this is a number without one"),
         ("v0 = \"1e300 km/s\"", "v0 = 1e303 is outside its range"),

@@ -178,6 +178,7 @@ fn laws_and_tables_are_told() {
         "coulomb",
         "weakening",
         "stribeck",
+        "hyperbolic",
         "rate-and-state",
         "table",
     ];
