@@ -8,6 +8,7 @@ use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 use crate::slip::speeds::Speeds;
+use crate::text::{Shown, to_digits};
 
 /// The most samples of a trace: some 300 MB.
 pub(crate) const MOST_SAMPLES: usize = 2_000_000;
@@ -46,6 +47,9 @@ pub enum TraceError {
     /// Two delays take more steps than are kept.
     #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
     OutgrowsPast,
+    /// The friction law has no coefficient where the block would be, after this time.
+    #[error("friction has no coefficient above 0 at a speed of the block, at t = {}", Shown(to_digits(*.0, 6)))]
+    NoFriction(f64),
     /// It was stopped before it was complete.
     #[error("stopped")]
     Stopped,
@@ -304,6 +308,9 @@ impl Recorder {
             }
             if self.motion.outgrows_its_past() {
                 return Err(TraceError::OutgrowsPast);
+            }
+            if self.motion.is_lost() {
+                return Err(TraceError::NoFriction(begun.t * self.units.time));
             }
             self.speeds.step(&self.motion, event);
             let step = self.motion.last_step();

@@ -269,7 +269,7 @@ impl FieldFacts {
 }
 
 /// Names of the facts about the origin of a file, with the attributes that hold them.
-const ORIGIN: [(&str, &str); 7] = [
+const ORIGIN: [(&str, &str); 8] = [
     ("title", root::TITLE),
     ("made by", root::SOURCE),
     ("revision", root::GIT_REVISION),
@@ -277,6 +277,7 @@ const ORIGIN: [(&str, &str); 7] = [
     ("plan", root::PLAN_HASH),
     ("protocol", root::PROTOCOL),
     ("friction", root::FRICTION_LAW),
+    ("mu_k", root::FRICTION_FORMULA),
 ];
 
 /// The facts about the origin of a file, by name, from its texts.

@@ -168,7 +168,7 @@ pub(super) fn quantity_in_units(
     of: &Quantity,
     units: &Units,
 ) -> Result<f64, Failure> {
-    let dimension = of.known().map_or([0; 3], Parameter::dimension);
+    let dimension = of.dimension();
     let fits = amount.check(dimension);
     fits.map_err(|error| refused(flag, amount, error))?;
     in_units(flag, amount, units)

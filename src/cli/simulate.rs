@@ -360,6 +360,11 @@ fn failure(error: &TraceError) -> Failure {
         | TraceError::TooManyEvents(_)
         | TraceError::TooManySteps(_) => Failure::bad_input(error.to_string()),
         TraceError::Stopped => Failure::failed(error.to_string()),
+        TraceError::NoFriction(_) => Failure::bad_input_with_help(
+            error.to_string(),
+            "mu_k has to be positive and finite at every speed of the block; [trace] until = … \
+             ends the motion before",
+        ),
         TraceError::OutgrowsPast => Failure::bad_input_with_help(
             error.to_string(),
             "a larger tolerance takes fewer steps, [trace] until = … ends it earlier",

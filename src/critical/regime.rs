@@ -229,7 +229,7 @@ fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observatio
     let cycles = stops.count as usize >= limits.cycles;
     let recent = cycles || motion.t - stops.last < options.recent * (motion.t - start);
     let regime = match summary.outcome {
-        Outcome::Undecided if motion.outgrows_its_past() => Regime::Undecided,
+        Outcome::Undecided if motion.is_lost() => Regime::Undecided,
         Outcome::Undecided if stops.count > 2 && recent => Regime::Irregular,
         Outcome::Undecided if stops.far() => Regime::Ended,
         Outcome::Undecided if stops.slips_on() => Regime::Slips,

@@ -193,7 +193,7 @@ impl<'p> Trials<'p> {
         let cycles = 1.0 + self.problem.feedback.remembered() / cycle.period();
         self.spent += summary.steps + self.problem.options.switch_on.steps_of_cycle * cycles as u64;
         let regime = match summary.outcome {
-            Outcome::Undecided if self.motion.outgrows_its_past() => Regime::Undecided,
+            Outcome::Undecided if self.motion.is_lost() => Regime::Undecided,
             Outcome::Undecided if sticking.goes_on() => Regime::Irregular,
             Outcome::Undecided if sticking.calms_down() => Regime::Ended,
             outcome => Regime::of(outcome),

@@ -126,9 +126,10 @@ impl From<TraceError> for Problem {
                 Self::new(Why::TooLarge, text)
                     .help("run it: slipmap simulate CASE.toml has no such limit")
             }
-            TraceError::Case(_) | TraceError::TooLong(_) | TraceError::OutgrowsPast => {
-                Self::new(Why::Unprocessable, text)
-            }
+            TraceError::Case(_)
+            | TraceError::TooLong(_)
+            | TraceError::OutgrowsPast
+            | TraceError::NoFriction(_) => Self::new(Why::Unprocessable, text),
         }
     }
 }

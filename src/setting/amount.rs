@@ -162,10 +162,7 @@ impl Units {
 
     /// The value of a quantity in an entry.
     pub(super) fn value(&self, entry: &Entry, of: &Quantity) -> Result<f64, SpecError> {
-        match of {
-            Quantity::Known(parameter) => self.number(entry, parameter.dimension()),
-            Quantity::Own(own) => self.number(entry, own.dimension),
-        }
+        self.number(entry, of.dimension())
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::expression::{
     Function, Misread, Op, Read, Tape, Written, functions, names_in, read_number,
 };
+use super::keys::FRICTION_TABLE;
 use super::map_names;
 use super::parameter::{Group, LARGEST, Parameter};
 use super::system::parameter::OwnParameter;
@@ -62,6 +63,9 @@ fn meaning(name: &str, own: &[&str]) -> Result<Name, &'static str> {
             Group::Law if parameter != Parameter::MuPrimeRest => Ok(Name::Known(parameter)),
             _ => Err("it is another parameter of slipmap"),
         };
+    }
+    if FRICTION_TABLE.iter().any(|key| key.name == name) {
+        return Err("[friction] has a key of that name");
     }
     if map_names::taken().any(|taken| taken == name) {
         return Err("maps have a variable of that name");
@@ -180,6 +184,11 @@ impl GivenFormula {
     /// The error of a name that is none of its parameters.
     #[must_use]
     pub fn unknown(&self, name: &str) -> SpecError {
+        let other = Parameter::from_name(name).filter(|p| self.model.known.contains(p));
+        if let Some(flag) = other.and_then(Parameter::long_flag) {
+            return SpecError::whole(format!("{name} has a flag of its own"))
+                .help(format!("--{flag} gives it"));
+        }
         let own = self.model.own.iter().map(|own| &*own.name);
         let known = self.model.known.iter().map(|p| p.name());
         let names: Vec<&str> = known.chain([Parameter::MuS.name()]).chain(own).collect();

@@ -88,6 +88,15 @@ impl Quantity {
         }
     }
 
+    /// Powers of force, length and time of numbers with units; of a system's own parameter none.
+    #[must_use]
+    pub fn dimension(&self) -> [i32; 3] {
+        match self {
+            Self::Known(parameter) => parameter.dimension(),
+            Self::Own(own) => own.dimension,
+        }
+    }
+
     /// Its unit; "1" where it has none.
     #[must_use]
     pub fn unit(&self, units: &Units) -> String {

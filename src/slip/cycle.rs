@@ -119,7 +119,7 @@ pub(crate) fn restart_after_release(
     let mut followed = 0.0;
     while followed < before {
         let cycle = follow_cycle(motion);
-        if motion.outgrows_its_past() {
+        if motion.is_lost() {
             return Err(NoCycle::LongDelay);
         }
         cycle.ok_or(NoCycle::NoStickSlip)?;
@@ -177,7 +177,7 @@ fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
             Mode::Backwards if motion.mode() == Mode::Forwards => return None,
             Mode::Backwards => {}
         }
-        if motion.t >= horizon || motion.outgrows_its_past() {
+        if motion.t >= horizon || motion.is_lost() {
             return None;
         }
     }

@@ -303,11 +303,17 @@ impl Motion {
         }
     }
 
-    /// Whether two delays take more steps than are kept. The motion then ends undecided, and its
-    /// state is NaN.
+    /// Whether its state is not known: two delays take more steps than are kept, or the friction law
+    /// has no value where the block would be. The motion then ends undecided, and its state is NaN.
     #[must_use]
-    pub fn outgrows_its_past(&self) -> bool {
-        self.u.is_nan() && (self.history.is_full() || self.signal.is_full())
+    pub fn is_lost(&self) -> bool {
+        self.u.is_nan() || self.a.is_nan()
+    }
+
+    /// Whether it is lost because two delays take more steps than are kept.
+    #[must_use]
+    pub(crate) fn outgrows_its_past(&self) -> bool {
+        self.is_lost() && (self.history.is_full() || self.signal.is_full())
     }
 
     /// The parameters.

@@ -176,7 +176,7 @@ impl Watch {
                 self.time_at_limit += step.length;
             }
         }
-        if motion.outgrows_its_past() {
+        if motion.is_lost() {
             self.outcome = Some(Outcome::Undecided);
             return;
         }
@@ -449,7 +449,7 @@ mod tests {
     /// Two delays take more steps than are kept: the motion ends undecided, since its past is
     /// incomplete.
     #[test]
-    fn what_outgrows_its_past_is_undecided() {
+    fn what_is_lost_is_undecided() {
         let p = Parameters {
             law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
             switch_on: 0.0,
@@ -466,7 +466,7 @@ mod tests {
         // here.
         let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
         let mut steps = 0;
-        while !motion.outgrows_its_past() {
+        while !motion.is_lost() {
             motion.advance(limits.horizon);
             steps += 1;
         }

@@ -184,3 +184,76 @@ fn mistakes_in_formulas_are_told_in_their_place() {
         assert!(one_line.contains(says), "{law}: {error}");
     }
 }
+
+/// The critical velocity by some flags of the formula law.
+fn critical_velocity(folder: &Folder, law: &[&str]) -> Value {
+    let line = [
+        "vc",
+        "--json",
+        "--friction",
+        "formula",
+        "--alpha-n=-8",
+        "--tau=0.3",
+        "--mu-s=0.6",
+    ];
+    let output = folder.run(&[&line[..], law].concat());
+    expect(&output, 0, "");
+    serde_json::from_str(&out(&output)).unwrap()
+}
+
+/// The same law in several writings, narrow beside the velocities of the block: parts of two of
+/// them exceed all numbers.
+#[test]
+fn writings_of_one_law_have_one_critical_velocity() {
+    let folder = Folder::new();
+    for (one, other, v_s) in [
+        ("0.3+0.2/cosh(v/v_s)^2", "0.3+0.2*(1-tanh(v/v_s)^2)", "1e-4"),
+        (
+            "0.3+0.2/(1+exp((v-0.05)/v_s))",
+            "0.3+0.1*(1-tanh((v-0.05)/(2*v_s)))",
+            "1e-4",
+        ),
+        (
+            "0.3+0.3*exp(-(v/v_s)^2)",
+            "0.3+0.3*exp(-(v/v_s)^(1.9999999+0.0000001))",
+            "0.05",
+        ),
+    ] {
+        let v_s = format!("--v-s={v_s}");
+        let [one, other] =
+            [one, other].map(|text| critical_velocity(&folder, &["--mu-k", text, &v_s]));
+        let [first, second] = [&one, &other].map(|answer| answer["vc"].as_f64().unwrap());
+        assert!(one["decided"] == true && other["decided"] == true);
+        assert!(
+            first > 0.03 && (first - second).abs() < 1e-5 * first,
+            "{first} {second}"
+        );
+    }
+}
+
+/// Where friction has no value, nothing is decided.
+#[test]
+fn motions_without_a_coefficient_are_undecided() {
+    let folder = Folder::new();
+    for (law, start) in [
+        ("0.5-0.4*v", "--x-dot0=2"),
+        ("0.4+0.05*ln(1.5-v)", "--x-dot0=1.49"),
+    ] {
+        let line = [
+            "simulate",
+            "--json",
+            "--friction",
+            "formula",
+            "--mu-s=0.6",
+            "--v0=0.1",
+        ];
+        let output = folder.run(&[&line[..], &["--mu-k", law, start, "--a0=2"]].concat());
+        expect(
+            &output,
+            2,
+            "friction has no coefficient above 0 at a speed of the block, at t =",
+        );
+    }
+    let answer = critical_velocity(&folder, &["--mu-k", "0.5-0.2*exp(-0.1/v)"]);
+    assert_eq!(answer["decided"], false, "{answer}");
+}

@@ -116,7 +116,8 @@ impl SweepFile<'_> {
                 None => true,
             };
             let axes: Vec<&Axis> = self.spec.axes.iter().filter(of_law).collect();
-            return self.check_formula(&axes, &mut fixed.clone());
+            let each = values_each(&axes);
+            return self.check_formula(&axes, each, &mut fixed.clone());
         }
         let mut worst = fixed.clone();
         for axis in &self.spec.axes {
@@ -138,11 +139,33 @@ impl SweepFile<'_> {
     }
 }
 
+/// The most settings at which a formula is checked before a sweep.
+const MOST_CHECKED: usize = 10_000;
+
+/// So many values of each axis, from end to end, make no more settings than are checked.
+fn values_each(axes: &[&Axis]) -> usize {
+    let settings = |each: usize| {
+        let counts = axes.iter().map(|axis| axis.len().min(each));
+        counts.fold(1, usize::saturating_mul)
+    };
+    let longest = axes.iter().map(|axis| axis.len()).max().unwrap_or(1);
+    let halves = std::iter::successors(Some(longest), |each| Some(each / 2));
+    let mut halves = halves.take_while(|&each| each > 1);
+    halves
+        .find(|&each| settings(each) <= MOST_CHECKED)
+        .unwrap_or(2)
+}
+
 /// Formulas, whose worst values are not known beforehand.
 impl SweepFile<'_> {
-    /// Checks that a formula has a coefficient at rest and at v0 for all values of these axes, the
-    /// last ones innermost.
-    fn check_formula(&self, axes: &[&Axis], setting: &mut Setting) -> Result<(), SpecError> {
+    /// Checks that a formula has a coefficient at rest and at v0 for up to `each` values of these
+    /// axes, the last ones innermost.
+    fn check_formula(
+        &self,
+        axes: &[&Axis],
+        each: usize,
+        setting: &mut Setting,
+    ) -> Result<(), SpecError> {
         let Some((axis, others)) = axes.split_first() else {
             let has_v0 = !setting.get(Parameter::V0).is_nan();
             let law = setting.friction_law().and_then(|_| match has_v0 {
@@ -151,9 +174,11 @@ impl SweepFile<'_> {
             });
             return law.map_err(|error| self.given.refused(&error));
         };
-        for &value in &axis.values {
+        let (count, last) = (each.min(axis.len()), axis.len() - 1);
+        for i in 0..count {
+            let value = axis.values[i * last / (count - 1).max(1)];
             setting.vary(&axis.parameter, value);
-            self.check_formula(others, setting).map_err(|error| {
+            self.check_formula(others, each, setting).map_err(|error| {
                 let at = format!("{} = {}", axis.parameter.name(), Shown(value));
                 let help = match &error.help {
                     Some(more) => format!("{more}, {at}"),

@@ -77,6 +77,8 @@ impl Motion {
         };
         let past = (&past[..=order], self.parameters.feedback.echoes());
         let Some(solved) = solve((self.u, self.a), length, past, rates) else {
+            // A law without a value ends the motion, unless a shorter step is solved.
+            self.step.u.fill(f64::NAN);
             return false;
         };
         let size = self.a.abs().max(self.u.abs()).max(self.parameters.v0);

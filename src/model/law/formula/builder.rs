@@ -78,22 +78,47 @@ impl Builder {
         }
     }
 
-    /// A quotient; one by cosh does not overflow.
+    /// A quotient. Powers of cosh and 1 + exp, which grow beyond all numbers, are not divided by:
+    /// 1/cosh and tanh stand in their place.
     pub(crate) fn quotient(&mut self, a: Operand, b: Operand) -> Operand {
-        if let Operand::Node(b) = b
-            && let Node::Cosh(of) = self.nodes[usize::from(b)]
+        if let Operand::Node(of) = b
+            && let Some(inverse) = self.inverse_of_growth(of)
         {
-            let Operand::Node(tanh) = self.add(Node::Tanh(of)) else {
-                return a;
-            };
-            let sech = self.add(Node::Sech(of, tanh));
-            return self.product(a, sech);
+            return self.product(a, inverse);
         }
         match (a, b) {
             (Operand::Number(a), Operand::Number(b)) => Operand::Number(a / b),
             (Operand::Node(a), Operand::Number(b)) => self.affine(a, 1.0 / b, 0.0),
             (Operand::Number(a), Operand::Node(b)) => self.add(Node::Over(a, b)),
             (Operand::Node(a), Operand::Node(b)) => self.add(Node::Quotient(a, b)),
+        }
+    }
+
+    /// 1 over a node that grows as an exponential; none of other nodes.
+    fn inverse_of_growth(&mut self, of: u8) -> Option<Operand> {
+        let node = |place: u8| self.nodes[usize::from(place)];
+        match node(of) {
+            Node::Cosh(a) => {
+                let Operand::Node(tanh) = self.add(Node::Tanh(a)) else {
+                    return None;
+                };
+                Some(self.add(Node::Sech(a, tanh)))
+            }
+            Node::Product(a, b) => {
+                let (one, other) = (self.inverse_of_growth(a)?, self.inverse_of_growth(b)?);
+                Some(self.product(one, other))
+            }
+            Node::Affine(exp, by, plus) if by * plus > 0.0 => {
+                let Node::Exp(a, rate) = node(exp) else {
+                    return None;
+                };
+                // 1/(q + p e^y) = (1 − tanh((y + ln(p/q))/2))/(2q).
+                let half = self.affine(a, 0.5 * rate, 0.5 * Number::ln(by / plus));
+                let tanh = self.function(half, Number::tanh, Node::Tanh);
+                let fall = self.difference(Operand::Number(1.0), tanh);
+                Some(self.product(fall, Operand::Number(0.5 / plus)))
+            }
+            _ => None,
         }
     }
 

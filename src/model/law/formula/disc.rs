@@ -2,7 +2,7 @@
 
 use super::number::Number;
 use crate::model::ball::Ball;
-use crate::model::elementary::{cos, expm1, ln_1p, sinh};
+use crate::model::elementary::{cos, exp, expm1, ln_1p, sinh};
 
 /// All complex numbers that differ from a real one by no more than a radius. Sums, products and
 /// quotients are those of [`Ball`]; functions are bounded off the real line as well.
@@ -95,8 +95,15 @@ impl Number for Disc {
     }
 
     fn exp(self) -> Self {
+        // A large radius about a number far below 0 is one exponential, lest 0 meet infinity.
+        const LARGE: f64 = 30.0;
+        let Ball { value, error } = self.0;
         let middle = self.middle().exp();
-        Self::about(middle, middle.value * expm1(self.0.error))
+        let off = match error > LARGE {
+            true => exp(value + error),
+            false => middle.value * expm1(error),
+        };
+        Self::about(middle, off)
     }
 
     fn ln(self) -> Self {
@@ -144,6 +151,10 @@ impl Number for Disc {
             true => Self::about(self.middle().atan(), error / (least * least)),
             false => Self::NONE,
         }
+    }
+
+    fn is_zero(self) -> bool {
+        self.0.is_zero()
     }
 }
 

@@ -25,6 +25,8 @@ pub(super) trait Number: Copy {
     /// 1/cosh.
     fn sech(self) -> Self;
     fn atan(self) -> Self;
+    /// Whether it is exactly 0.
+    fn is_zero(self) -> bool;
 }
 
 impl Number for f64 {
@@ -90,6 +92,10 @@ impl Number for f64 {
 
     fn atan(self) -> Self {
         atan(self)
+    }
+
+    fn is_zero(self) -> bool {
+        self == 0.0
     }
 }
 
@@ -161,6 +167,10 @@ impl<T: Number> Number for Jet<T> {
 
     fn over(self, other: Self) -> Self {
         let inverse = T::of(1.0).over(other.value);
+        if inverse.is_zero() {
+            // Beyond all numbers a divisor leaves nothing.
+            return Self::of(0.0);
+        }
         let square = inverse.times(inverse);
         let bend = T::of(2.0).times(square).times(inverse);
         self.times(other.through([inverse, square.negated(), bend]))
@@ -234,6 +244,10 @@ impl<T: Number> Number for Jet<T> {
         let bend = T::of(-2.0).times(self.value).times(slope).times(slope);
         self.through([self.value.atan(), slope, bend])
     }
+
+    fn is_zero(self) -> bool {
+        self.value.is_zero()
+    }
 }
 
 /// Every real number of an interval.
@@ -300,5 +314,9 @@ impl Number for Ball {
 
     fn atan(self) -> Self {
         self.atan()
+    }
+
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.error == 0.0
     }
 }

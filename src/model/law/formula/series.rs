@@ -113,6 +113,8 @@ impl FormulaSeries {
             Node::Sum(a, b) => at(a)[k] + at(b)[k],
             Node::Difference(a, b) => at(a)[k] - at(b)[k],
             Node::Product(a, b) => product(at(a), at(b), k),
+            // Beyond all numbers a divisor leaves nothing.
+            Node::Quotient(..) | Node::Over(..) if beside[0] == 0.0 => 0.0,
             Node::Quotient(a, b) => (at(a)[k] - product(at(b), own, k)) * beside[0],
             Node::Over(_, a) => -product(at(a), own, k) * beside[0],
             Node::Power(..) if rests => 0.0,
@@ -174,8 +176,10 @@ impl FormulaSeries {
         match node {
             Node::Exp(a, by) => by * at(a) < -order,
             Node::Tanh(a) | Node::Sech(a, _) | Node::Atan(a) => at(a).abs() > order,
-            Node::Over(_, a) | Node::Quotient(_, a) => at(a).abs() > FAR,
-            _ => false,
+            Node::Over(_, a) | Node::Quotient(_, a) => at(a).abs() > FAR && at(a).is_finite(),
+            Node::Linear(..) | Node::Affine(..) | Node::Sum(..) | Node::Difference(..) => false,
+            Node::Product(..) | Node::Power(..) | Node::Ln(_) | Node::Sin(_) => false,
+            Node::Cos(_) | Node::Sinh(_) | Node::Cosh(_) => false,
         }
     }
 
