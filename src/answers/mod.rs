@@ -6,6 +6,7 @@
 //! - `margins`: margins of a setting, in its own units
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `trace`: a motion sampled over time, with its events
+//! - `trace_error`: why there is no trace of a motion
 //! - `vc`: the critical velocity of a setting by either protocol, the regime of a working velocity,
 //!   and the check by simulation
 
@@ -14,6 +15,7 @@ pub mod best;
 pub mod margins;
 pub mod samples;
 pub mod trace;
+mod trace_error;
 pub mod vc;
 
 pub use trace::Trace;

@@ -2,13 +2,13 @@
 //! its trace.
 
 use super::samples::{Most, Samples};
+pub use super::trace_error::TraceError;
 use crate::model::stop::Stop;
 use crate::setting::case_file::{CaseSpec, Sampling};
 use crate::slip::case::{Case, CaseError, CaseUnits};
-use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
+use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 use crate::slip::speeds::Speeds;
-use crate::text::{Shown, to_digits};
 
 /// The most samples of a trace: some 300 MB.
 pub(crate) const MOST_SAMPLES: usize = 2_000_000;
@@ -28,32 +28,6 @@ pub(crate) const EVENTS: [(Event, &str); 5] = [
     (Event::LiftOff, "liftoff"),
     (Event::SwitchOn, "switch_on"),
 ];
-
-/// Why there is no trace.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TraceError {
-    /// The model refuses the case.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// It would be too long.
-    #[error("the trace would have more than {0} samples or events")]
-    TooLong(usize),
-    /// It has more events than allowed, its samples being thinned.
-    #[error("the motion has more than {0} events")]
-    TooManyEvents(usize),
-    /// It takes more steps than allowed.
-    #[error("what becomes of the motion is not known after {0} steps")]
-    TooManySteps(u64),
-    /// Two delays take more steps than are kept.
-    #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
-    OutgrowsPast,
-    /// The friction law has no coefficient where the block would be, after this time.
-    #[error("friction has no coefficient above 0 at a speed of the block, at t = {}", Shown(to_digits(*.0, 6)))]
-    NoFriction(f64),
-    /// It was stopped before it was complete.
-    #[error("stopped")]
-    Stopped,
-}
 
 /// The state at one time, in the case's units.
 #[derive(Debug, Clone, Copy, PartialEq)]

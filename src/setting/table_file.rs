@@ -261,7 +261,7 @@ impl<'t> CurveKeys<'t> {
     }
 }
 
-/// The units of the file, whatever its curve says: nothing of that is left in the text that is read.
+/// The units of the file, whatever its curve says: nothing of that is left in what is read.
 fn units_beside_curve(all: &[Entry]) -> Units {
     let others = all.iter().filter(|entry| entry.key != "friction");
     units_of(&mut Document::of(others.cloned().collect(), ["units"]))

@@ -303,8 +303,9 @@ impl Motion {
         }
     }
 
-    /// Whether its state is not known: two delays take more steps than are kept, or the friction law
-    /// has no value where the block would be. The motion then ends undecided, and its state is NaN.
+    /// Whether its state is not known: two delays take more steps than are kept, or the friction
+    /// law has no value where the block would be. The motion then ends undecided, and its state is
+    /// NaN.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.u.is_nan() || self.a.is_nan()
