@@ -42,8 +42,8 @@ pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
 pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
 
 impl SystemArgs {
-    /// The system at its setting, with its own parameters in `sets`; none without a system. `flag` gives the value of the flag for one
-    /// of [`OTHERS`].
+    /// The system at its setting, with its own parameters in `sets`; none without a system. `flag`
+    /// gives the value of the flag for one of [`OTHERS`].
     pub(super) fn read(
         &self,
         sets: &SetArgs,
