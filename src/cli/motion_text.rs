@@ -96,7 +96,7 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
         }
         Outcome::Undecided if summary.decided < spec.case.horizon => format!(
             "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are \
-            kept",
+             kept, or friction has no coefficient at a speed of the block",
             digits(summary.decided)
         ),
         Outcome::Undecided => format!("undecided at the horizon, t = {}", Shown(spec.case.horizon)),

@@ -305,10 +305,10 @@ impl Motion {
 
     /// Whether its state is not known: two delays take more steps than are kept, or the friction
     /// law has no value where the block would be. The motion then ends undecided, and its state is
-    /// NaN.
+    /// no number.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        self.u.is_nan() || self.a.is_nan()
+        !(self.u.is_finite() && self.a.is_finite())
     }
 
     /// Whether it is lost because two delays take more steps than are kept.

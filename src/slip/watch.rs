@@ -167,9 +167,8 @@ impl Watch {
         // would seem to begin before switch-on.
         let start = std::mem::replace(&mut self.seen, motion.t);
         let size = motion.a.abs().max(motion.u.abs());
-        let finite = (motion.a + motion.u).is_finite();
         let controlled = start >= self.switch_on || !self.switch_on.is_finite();
-        if controlled && finite {
+        if controlled && !motion.is_lost() {
             self.n_min = motion.smallest_load(self.n_min);
             self.peak = step.largest_force(self.peak);
             if motion.is_at_limit() {
@@ -180,7 +179,7 @@ impl Watch {
             self.outcome = Some(Outcome::Undecided);
             return;
         }
-        if !finite || (size > BEYOND * self.scale && event != Some(Event::LiftOff)) {
+        if size > BEYOND * self.scale && event != Some(Event::LiftOff) {
             self.outcome = Some(Outcome::Diverged);
             return;
         }

@@ -254,6 +254,16 @@ fn motions_without_a_coefficient_are_undecided() {
             "friction has no coefficient above 0 at a speed of the block, at t =",
         );
     }
+    let steep = "simulate --friction stribeck --mu0=0.3 --mu-s=0.6 --v-s=0.1 --exponent=0.2 \
+        --v0=0.1 --x-dot0=0 --a0=0";
+    let steep: Vec<&str> = steep.split_whitespace().collect();
+    let told = folder.run(&steep);
+    expect(&told, 0, "");
+    assert!(
+        out(&told).contains("or friction has no coefficient"),
+        "{}",
+        out(&told)
+    );
     let answer = critical_velocity(&folder, &["--mu-k", "0.5-0.2*exp(-0.1/v)"]);
     assert_eq!(answer["decided"], false, "{answer}");
 }
