@@ -1,6 +1,8 @@
 //! Files of measured curves, of every kind that programs write, given by a flag and by keys of
 //! sweep, case and setting files: the same points or the same mistake everywhere.
 
+use std::process::Output;
+
 use crate::curve_files::{CURVES, Curve, MU_K, Read, SPEEDS, Said, path, says};
 use crate::program::{Folder, err, expect, out};
 
@@ -35,9 +37,11 @@ fn flags(
     .collect()
 }
 
-/// Checks what was said on standard error.
+/// Checks the exit code, and what was said on standard error.
 #[track_caller]
-fn check_said(said: &str, of: &Curve, keys: usize) {
+fn check(output: &Output, of: &Curve, keys: usize) {
+    let said = &err(output);
+    assert_eq!(output.status.code(), Some(code(of)), "{}: {said}", of.file);
     let file = of.file;
     match of.read {
         Read::Points("") => assert!(!said.contains(file), "{file}: {said}"),
@@ -72,14 +76,7 @@ fn a_flag_reads_every_curve() {
         let usual = ["point", "--json", "--v0=0.1", "--friction=table", "--table"];
         let more: Vec<&str> = flags.iter().map(String::as_str).collect();
         let output = folder.run(&[&usual[..], &[curve.file], &more[..]].concat());
-        assert_eq!(
-            output.status.code(),
-            Some(code(curve)),
-            "{}: {}",
-            curve.file,
-            err(&output)
-        );
-        check_said(&err(&output), curve, 0);
+        check(&output, curve, 0);
         if code(curve) == 0 {
             let told: serde_json::Value = serde_json::from_str(&out(&output)).unwrap();
             assert_eq!(
@@ -106,14 +103,7 @@ fn a_sweep_reads_every_curve() {
         let text = format!("axes.tau = [1]\nfixed.v0 = 0.1\nfixed.alpha_v = -0.1\n{law}");
         std::fs::write(folder.path().join("sweep.toml"), text).unwrap();
         let output = folder.run(&["run", "--fresh", "sweep.toml"]);
-        assert_eq!(
-            output.status.code(),
-            Some(code(curve)),
-            "{}: {}",
-            curve.file,
-            err(&output)
-        );
-        check_said(&err(&output), curve, 1);
+        check(&output, curve, 1);
         if code(curve) == 0 {
             // The map is complete without the file.
             let kept = out(&folder.run(&["info", "--sweep", "sweep.h5"]));
