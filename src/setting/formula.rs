@@ -25,7 +25,7 @@ const MOST: usize = 32;
 /// A formula whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormulaModel {
-    /// As it was written.
+    /// The expression as it was written.
     text: String,
     tape: Tape,
     /// What its names stand for, in the order of the tape's values after the speed.

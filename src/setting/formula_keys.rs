@@ -37,16 +37,14 @@ impl FormulaKeys {
     pub(super) fn ahead(document: &Document, text: &str, units: &Units) -> Self {
         let entries = document.ahead("friction").map(Entry::table);
         let read = entries.and_then(|entries| read_formula(&entries.ok()?, text, units));
-        match read {
-            None => Self::default(),
-            Some(Ok(formula)) => Self {
-                formula: Some(formula),
-                ..Self::default()
-            },
-            Some(Err(error)) => Self {
-                misread: Some(error),
-                ..Self::default()
-            },
+        let (formula, misread) = match read.transpose() {
+            Ok(formula) => (formula, None),
+            Err(error) => (None, Some(error)),
+        };
+        Self {
+            formula,
+            misread,
+            ..Self::default()
         }
     }
 

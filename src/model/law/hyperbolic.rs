@@ -4,6 +4,7 @@
 use super::formula::{Builder, Node, Operand};
 use super::{Form, FrictionLaw, Made, checked_coefficients};
 use crate::model::ModelError;
+use crate::model::elementary::cosh;
 
 /// The row of the law with 1/cosh where laws are named.
 pub(super) const FORM: Form = Form {
@@ -28,8 +29,8 @@ impl FrictionLaw {
         viscous_coefficient: f64,
     ) -> Result<Self, ModelError> {
         transition(mu0, v_s, mu_s, viscous_coefficient, |make, s| {
-            let cosh = make.function(s, crate::model::elementary::cosh, Node::Cosh);
-            make.quotient(Operand::Number(1.0), cosh)
+            let divisor = make.function(s, cosh, Node::Cosh);
+            make.quotient(Operand::Number(1.0), divisor)
         })
     }
 }

@@ -39,7 +39,7 @@ impl OwnParameter {
         }
     }
 
-    /// The same with a unit that has these powers of force, length and time.
+    /// This parameter with a unit that has these powers of force, length and time.
     pub(in crate::setting) fn measured(&self, unit: String, dimension: [i32; 3]) -> Self {
         Self {
             unit,
@@ -48,7 +48,7 @@ impl OwnParameter {
         }
     }
 
-    /// The same with this unit, of which it is known that it is understood.
+    /// This parameter with another unit; one that is not understood has no dimension.
     pub(crate) fn in_unit(&self, unit: &str) -> Self {
         let known = Unit::read(unit).ok();
         let dimension = known.map_or([0; 3], |unit| unit.dimension());

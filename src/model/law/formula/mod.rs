@@ -83,7 +83,7 @@ impl Node {
         }
     }
 
-    /// The same operation on nodes at other places.
+    /// This operation on nodes at other places.
     fn moved(self, to: impl Fn(u8) -> u8) -> Self {
         match self {
             Self::Linear(..) => self,
@@ -189,9 +189,9 @@ impl FrictionLaw {
     pub fn formula(formula: Formula, mu_s: f64) -> Result<Self, ModelError> {
         let mu_s = ModelError::positive("mu_s", mu_s)?;
         let law = Self::new(Kind::Formula(ByFormula { formula }), mu_s);
-        law.posed_at(0.0)?;
+        let at_rest = law.posed_at(0.0)?;
         // What is μ_S at rest may be computed a rounding above it.
-        checked_at_rest("mu_k", law.mu_k(0.0) * (1.0 - 4.0 * f64::EPSILON), mu_s)?;
+        checked_at_rest("mu_k", at_rest * (1.0 - 4.0 * f64::EPSILON), mu_s)?;
         Ok(law)
     }
 

@@ -140,7 +140,7 @@ impl FormulaSeries {
                 integrated(slope, beside, k)
             }
             Node::Sech(a, tanh) => {
-                slope[k - 1] = k as f64 * at(a)[k];
+                steeper(a);
                 beside[k - 1] = -product(slope, at(tanh), k - 1);
                 integrated(beside, own, k)
             }
