@@ -221,9 +221,15 @@ impl Ball {
         let least = x - error;
         let value = pow(x, exponent.value);
         if least > 0.0 {
-            let off = -ln_1p(-error / x);
-            let of_exponent = exponent.error * (ln(x).abs() + off);
-            let relative = expm1(exponent.value.abs() * off + of_exponent);
+            let (part, p) = (error / x, exponent.value);
+            // The slope p·z^(p − 1) is largest where |z| is largest, or where it is least.
+            let of_base = if p >= 1.0 {
+                expm1(p * ln_1p(part))
+            } else {
+                expm1(p * ln_1p(-part)).abs()
+            };
+            let of_exponent = expm1(exponent.error * (ln(x).abs() - ln_1p(-part)));
+            let relative = of_base + of_exponent + of_base * of_exponent;
             return Self::of(value, value * relative, SEVERAL * UNIT * value);
         }
         if x >= 0.0 && exponent.value > 0.0 && exponent.error == 0.0 {
