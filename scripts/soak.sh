@@ -5,8 +5,8 @@
 #
 # The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/timed/faults.rs), every
 # loss of power (tests/files/crash.rs) and the memory of each command (tests/guards/memory.rs), then in turn, with new seeds,
-# until the time is over (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, losses of power, motions and
-# critical velocities against the referee.
+# until the time is over (1 hour by default): property tests of the model, kills of runs, damaged tiles and maps, flipped bits,
+# losses of power, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -50,6 +50,7 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_CASES=2000 tests --test linear chains::
     SLIPMAP_CASES=100000 tests --test linear near_resonance::
     SLIPMAP_CASES=1000 tests --test linear best_general::
+    PROPTEST_CASES=20000 tests --lib model::
     SLIPMAP_CASES=100 SLIPMAP_GRID=40 SLIPMAP_PLACES=1000 tests --test linear robust_beyond::
 done
 say "$round rounds"
