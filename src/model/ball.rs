@@ -6,6 +6,10 @@ use super::elementary::{atan, cos, cosh, exp, expm1, ln, ln_1p, pow, sin, sinh, 
 const UNIT: f64 = f64::EPSILON;
 /// Units in the last place by which hyperbolic functions, arcs and powers err at most.
 const SEVERAL: f64 = 4.0;
+/// From here on the least of an exponential over an interval is nothing to the greatest.
+const WIDE: f64 = 30.0;
+/// What rounding of an argument changes at most of an exponential that is finite.
+const OF_ARGUMENT: f64 = 1e-12;
 
 /// A number and a bound on its distance from the exact one. At least one of the two is not finite
 /// where the exact number does not exist, as for 1/0.
@@ -152,7 +156,12 @@ impl Ball {
         let value = exp(self.value);
         let exact = value == 0.0 || (value == 1.0 && self.value == 0.0);
         let rounding = if exact { 0.0 } else { UNIT * value };
-        Self::of(value, value * expm1(self.error), rounding)
+        // A wide interval about a number far below 0 is one exponential, lest 0 meet infinity.
+        let error = match self.error > WIDE {
+            true => exp(self.value + self.error) * (1.0 + OF_ARGUMENT),
+            false => value * expm1(self.error),
+        };
+        Self::of(value, error, rounding)
     }
 
     /// The natural logarithm of a number above 0.
@@ -347,6 +356,21 @@ mod tests {
         assert_eq!(Ball::exact(2.0).power(10), Ball::exact(1024.0));
         assert_eq!(Ball::exact(0.0).exp().error, 0.0);
         assert!(odd.times(odd).error > 0.0 && odd.plus(one).error > 0.0);
+    }
+
+    #[test]
+    fn exponentials_of_wide_intervals_are_known() {
+        for (from, to) in [(-100.0, 0.0), (-7000.0, -100.0), (-7000.0, 1.0)] {
+            let found = Ball::between(from, to).exp();
+            assert!(found.is_known());
+            for x in [from, 0.5 * (from + to), to] {
+                assert!(
+                    (f64::exp(x) - found.value).abs() <= found.error,
+                    "{x} {found:?}"
+                );
+            }
+            assert!(found.error <= 1.001 * f64::exp(to), "{found:?}");
+        }
     }
 
     #[test]

@@ -267,3 +267,34 @@ fn motions_without_a_coefficient_are_undecided() {
     let answer = critical_velocity(&folder, &["--mu-k", "0.5-0.2*exp(-0.1/v)"]);
     assert_eq!(answer["decided"], false, "{answer}");
 }
+
+/// Laws that are infinitely steep or curved at rest: the margin of v0 is told soon, and stability
+/// changes there and not before.
+#[test]
+fn margins_of_v0_end_where_steep_laws_become_unstable() {
+    let folder = Folder::new();
+    for (exponent, more) in [("0.5", ""), ("0.5", "--sensor-lag=0.1"), ("1.5", "")] {
+        let law = format!("0.3 + 0.2*exp(-(v/0.05)^{exponent})");
+        let given = ["--friction=formula", "--mu-k", &law, "--mu-s=0.5"];
+        let control = ["--alpha-v=-0.4", "--tau=4.15"];
+        let more = Some(more).filter(|more| !more.is_empty());
+        let flags: Vec<&str> = given.into_iter().chain(control).chain(more).collect();
+        let output = folder.run(&[&["margins", "--json", "--v0=0.1"], &flags[..]].concat());
+        expect(&output, 0, "");
+        let told: Value = serde_json::from_str(&out(&output)).unwrap();
+        let margin = &told["v0_margin"];
+        let lower = margin["from"].as_f64().unwrap();
+        assert_eq!(told["undecided"], Value::Array(vec![]), "{told}");
+        let unstable = |v0: f64| {
+            let v0 = format!("--v0={v0}");
+            point(&folder, &[&[&*v0], &flags[..]].concat())["n_unstable"].clone()
+        };
+        assert_eq!(unstable(lower * (1.0 + 1e-6)), 0, "{exponent} {more:?}");
+        assert_eq!(unstable(lower * (1.0 - 1e-6)), 2, "{exponent} {more:?}");
+        let between = (1..5).map(|i| lower + (0.1 - lower) * f64::from(i) / 5.0);
+        assert!(
+            between.into_iter().all(|v0| unstable(v0) == 0),
+            "{exponent} {more:?}"
+        );
+    }
+}

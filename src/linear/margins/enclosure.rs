@@ -159,11 +159,12 @@ impl<const V: usize> Point<V> {
 }
 
 /// A bound on the size of any root with Re λ ≥ −σ, for groups up to these sizes: |1 − E| times the
-/// size of a latency's factor is at most `control`.
+/// size of a latency's factor is at most `control`. Infinite where a group has no bound.
 pub(super) fn root_bound(b: f64, a_v: f64, a_n: f64, control: f64) -> f64 {
     let linear = b.abs() + control * a_v.abs();
     let constant = 1.0 + control * (b.abs() * a_v.abs() + a_n.abs());
-    0.5 * (linear + (linear * linear + 4.0 * constant).sqrt())
+    let bound = 0.5 * (linear + (linear * linear + 4.0 * constant).sqrt());
+    if bound.is_nan() { f64::INFINITY } else { bound }
 }
 
 /// The slope μ_K′ of a law as a variable of its own.
@@ -223,7 +224,14 @@ impl SlidingLaw<'_> {
             mu_prime: 1.0,
         });
         let still = self.oscillator.dashpot_ratios().sum();
+        let unbounded = |value: f64, unit: f64| Affine {
+            rest: if unit == 0.0 { 0.0 } else { f64::INFINITY },
+            ..Affine::constant(value.into())
+        };
         let within = |unit: f64, (low, high): (f64, f64)| {
+            if !(high - low).is_finite() {
+                return unbounded(still, unit);
+            }
             let mut number = Affine::constant((0.5 * unit * (low + high) + still).into());
             let half = 0.5 * unit.abs() * (high - low) * (1.0 + 1e-12);
             match jump {
@@ -235,6 +243,9 @@ impl SlidingLaw<'_> {
         };
         // `shift` ≥ 0 is the part of the value that the law does not change.
         let along = |value: f64, shift: f64, unit: f64, (low, high): (f64, f64)| {
+            if !(high - low).is_finite() {
+                return unbounded(value, unit);
+            }
             let mut number = Affine::constant(value.into());
             let (steep, spread) = (0.5 * (low + high), 0.5 * (high - low));
             number.part[variable] = Complex64::from(unit * steep * half);

@@ -12,6 +12,9 @@ use super::enclosure::Enclosed;
 
 /// Boxes that are looked at along one direction before what is left of it is given up.
 pub(super) const MOST_BOXES: u32 = 1 << 17;
+/// Where a bound on frequencies is less than this part of another, the half that has it is taken
+/// by itself.
+const NARROWER: f64 = 0.5;
 /// How far below a box a zero may be found.
 const NEAR: f64 = 1e-9;
 /// Distances that differ by less are the same.
@@ -22,7 +25,8 @@ pub(super) trait Family {
     /// D where ω and the parameter are within these intervals.
     fn enclosed(&self, omega: (f64, f64), parameter: (f64, f64)) -> Enclosed<2>;
 
-    /// The ω beyond which no root is on the line while the parameter is within `parameter`.
+    /// The ω beyond which no root is on the line while the parameter is within `parameter`;
+    /// infinite where none is known.
     fn bound(&self, parameter: (f64, f64)) -> f64;
 
     /// Whether nobody waits for the answer any more.
@@ -76,29 +80,40 @@ pub(super) fn nearest(family: &impl Family, (from, to): (f64, f64), left: &mut u
     let apart = |p: (f64, f64)| (p.0 - from).max(from - p.1).max(0.0);
     let mut best = f64::INFINITY;
     let mut found = Nearest::None;
-    let mut parts = BinaryHeap::from([Part {
-        distance: 0.0,
-        omega: (0.0, family.bound(whole)),
-        parameter: whole,
-    }]);
+    let unbounded = |parameter: (f64, f64)| Part {
+        distance: apart(parameter),
+        omega: (0.0, f64::INFINITY),
+        parameter,
+    };
+    let mut parts = BinaryHeap::from([unbounded(whole)]);
     while *left > 0 && !family.stopped() {
         *left -= 1;
         let Some(part) = parts.pop().filter(|part| part.distance < best) else {
             return found;
         };
-        let over = family.enclosed(part.omega, part.parameter);
+        let (w, p) = (part.omega, part.parameter);
+        let [wm, pm] = [0.5 * (w.0 + w.1), 0.5 * (p.0 + p.1)];
+        if w.1.is_infinite() {
+            let mut halves = [(p.0, pm), (pm, p.1)].map(unbounded);
+            halves.sort_by(|a, b| b.cmp(a));
+            match frequencies(family, &halves, p) {
+                Some(most) if most.is_infinite() => return Nearest::Undecided,
+                Some(most) => parts.push(Part {
+                    omega: (0.0, most),
+                    ..part
+                }),
+                None => parts.extend(halves),
+            }
+            continue;
+        }
+        let over = family.enclosed(w, p);
         if !over.value.may_vanish() {
             continue;
         }
-        let (w, p) = (part.omega, part.parameter);
         if let Some(zero) = newton(family, part).filter(|zero| apart((*zero, *zero)) < best) {
             best = apart((zero, zero)) * (1.0 - SAME);
             found = Nearest::At(zero);
         }
-        let [wm, pm] = [0.5 * (w.0 + w.1), 0.5 * (p.0 + p.1)];
-        // Frequencies and parameters are of order 1: below that nothing is told from 0.
-        let fine =
-            |(a, b): (f64, f64)| b - a <= 16.0 * f64::EPSILON * (1e-3 + a.abs().max(b.abs()));
         let halves = match (fine(w), fine(p)) {
             // Nothing is left to halve: a zero within rounding.
             (true, true) => {
@@ -118,6 +133,21 @@ pub(super) fn nearest(family: &impl Family, (from, to): (f64, f64), left: &mut u
         }));
     }
     Nearest::Undecided
+}
+
+/// The ω beyond which no root is on the line while the parameter is within `p`; none where its
+/// halves are better taken by themselves, the nearer of which comes first.
+fn frequencies(family: &impl Family, halves: &[Part; 2], p: (f64, f64)) -> Option<f64> {
+    let most = family.bound(p);
+    let nearer = || family.bound(halves[0].parameter);
+    let stays = fine(p) || (most.is_finite() && nearer() >= NARROWER * most);
+    stays.then_some(most)
+}
+
+/// Whether an interval is not worth halving. Frequencies and parameters are of order 1: below that
+/// nothing is told from 0.
+fn fine((a, b): (f64, f64)) -> bool {
+    b - a <= 16.0 * f64::EPSILON * (1e-3 + a.abs().max(b.abs()))
 }
 
 /// A zero of D in this part, by Newton's method from its middle.

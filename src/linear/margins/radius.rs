@@ -45,6 +45,8 @@ pub struct Radius {
 const MATTERS: f64 = 8.0;
 /// Boxes end at this part of a change of the delay at which roots accumulate at the line.
 const BEFORE_ACCUMULATION: f64 = 1.0 - 1e-3;
+/// Boxes end at this part of a change of the velocity to rest where slopes have no bound there.
+const BEFORE_REST: f64 = 1.0 - 1e-3;
 /// Jumps of the slope lie within this part of their distance.
 const CONFINED: f64 = 1e-3;
 #[derive(Debug, Clone, Copy)]
@@ -94,10 +96,14 @@ impl<L: OnLine> Surroundings<'_, L> {
             .or_else(|| last.map(|change| [0.0, change, 0.0]));
         let mut bound = unstable.map_or(limit, largest);
         // At the delay where roots accumulate at the line none of them is the highest.
-        let most = match last {
+        let mut most = match last {
             Some(last) => bound.min(BEFORE_ACCUMULATION * last),
             None => bound,
         };
+        // Nor is one where friction is infinitely steep, at rest.
+        if self.highest(most).is_infinite() {
+            most *= BEFORE_REST;
+        }
         let side = |fixed: bool| if fixed { (0.0, 0.0) } else { (-most, most) };
         let [gain, delay, third] = fixed.map(side);
         let whole = [

@@ -2,7 +2,7 @@
 
 use super::number::Number;
 use crate::model::ball::Ball;
-use crate::model::elementary::{cos, exp, expm1, ln_1p, sinh};
+use crate::model::elementary::{cos, expm1, ln_1p, sinh};
 
 /// All complex numbers that differ from a real one by no more than a radius. Sums, products and
 /// quotients are those of [`Ball`]; functions are bounded off the real line as well.
@@ -95,15 +95,7 @@ impl Number for Disc {
     }
 
     fn exp(self) -> Self {
-        // A large radius about a number far below 0 is one exponential, lest 0 meet infinity.
-        const LARGE: f64 = 30.0;
-        let Ball { value, error } = self.0;
-        let middle = self.middle().exp();
-        let off = match error > LARGE {
-            true => exp(value + error),
-            false => middle.value * expm1(error),
-        };
-        Self::about(middle, off)
+        Self(self.0.exp())
     }
 
     fn ln(self) -> Self {
