@@ -122,6 +122,11 @@ fn own_parameters_are_axes_of_maps() {
         .iter()
         .map(|row| row[sigma].parse::<f64>().unwrap());
     assert_eq!(sigmas.fold(0.0, f64::max), 0.1);
+    let at = ["--at=delta=2", "--at", "sigma=100 s/km", "--at=tau=0.6"];
+    for command in ["point", "margins"] {
+        let told = run(&[&[command, "--map", "map.h5"], &at[..]].concat());
+        assert!(told.contains("sigma = 0.1 m-1 s;"), "{told}");
+    }
     let info = run(&["info", "map.h5"]);
     assert!(info.contains("formula") && info.contains("sigma"), "{info}");
 }
