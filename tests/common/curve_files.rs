@@ -90,6 +90,15 @@ pub(crate) const CURVES: &[Curve] = &[
         },
         "",
     ),
+    points(
+        "newtons.csv",
+        Said {
+            load: Some("10"),
+            ..NOTHING
+        },
+        "forces are in N by their title, but the setting has no units: they are divided by the \
+         normal load as it is given, 10",
+    ),
     points("loads.csv", NOTHING, ""),
     points("loads.csv", columns("load=3,force=2,speed=1"), ""),
     points(

@@ -301,14 +301,21 @@ impl Reader<'_> {
     /// is told of it.
     fn force_scale(&self) -> Result<(Scale, Option<Remark>), SpecError> {
         let unit = |column: usize| self.titles.unit(self.sheet, column);
-        let of_load = self.chosen.load.and_then(|load| match load {
+        let (Some(force), Some(load)) = (unit(self.chosen.friction), self.chosen.load) else {
+            return Ok((Scale::ONE, None));
+        };
+        let of_load = match load {
             Load::Column(column) => unit(column),
             Load::Fixed(_) => self.options.units.force(),
-        });
-        match unit(self.chosen.friction).zip(of_load) {
-            Some((force, load)) if force != load => {
+        };
+        match (of_load, load) {
+            (Some(load), _) if force != load => {
                 let scale = scale_of_force(force, load)?;
                 Ok((scale, converted("forces", scale, [force, load])))
+            }
+            (None, Load::Fixed(load)) => {
+                let (unit, say) = (force.to_owned(), self.options.spoken.units());
+                Ok((Scale::ONE, Some(Remark::NoUnitOfLoad { unit, load, say })))
             }
             _ => Ok((Scale::ONE, None)),
         }

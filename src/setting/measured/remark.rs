@@ -47,6 +47,15 @@ pub enum Remark {
         /// How to say the units of the setting.
         say: &'static str,
     },
+    /// Forces have a unit by their title, but the setting and so its load have none.
+    NoUnitOfLoad {
+        /// The unit of the title.
+        unit: String,
+        /// The load.
+        load: f64,
+        /// How to say the units of the setting.
+        say: &'static str,
+    },
     /// Titles do not tell what all columns hold.
     ByOrder {
         /// The column taken as the speed, and that taken as the friction.
@@ -99,6 +108,12 @@ impl fmt::Display for Remark {
                 f,
                 "speeds are in {unit} by their title, but the setting has no units: they are taken \
                  as they are; {say} gives it units"
+            ),
+            Self::NoUnitOfLoad { unit, load, say } => write!(
+                f,
+                "forces are in {unit} by their title, but the setting has no units: they are \
+                 divided by the normal load as it is given, {}; {say} gives it units",
+                Shown(*load)
             ),
             Self::ByOrder {
                 columns: [speed, mu],
