@@ -119,6 +119,11 @@ pub(crate) const CURVES: &[Curve] = &[
         "3 rows are left out: they are no numbers; the first is line 3",
     ),
     points(
+        "infinite.csv",
+        NOTHING,
+        "2 rows are left out: they are no numbers; the first is line 3",
+    ),
+    points(
         "millimetres.csv",
         Said {
             speed_unit: Some("mm/s"),

@@ -22,17 +22,17 @@ impl DecimalMark {
         }
     }
 
-    /// The number of a cell; none where it is no number with this mark.
+    /// The number of a cell; none where it is no number with this mark, or beyond all numbers.
     pub(super) fn number(self, cell: &str) -> Option<f64> {
-        self.plain(cell)?.parse().ok()
+        finite(&self.plain(cell)?)
     }
 
     /// The number of a cell times a factor, rounded once.
     pub(super) fn scaled(self, cell: &str, scale: Scale) -> Option<f64> {
         let plain = self.plain(cell)?;
-        let number = plain.parse().ok()?;
-        // With an exponent beyond all numbers it is 0 or infinite in any unit.
-        Some(scale.of(&plain).unwrap_or(number))
+        let number = finite(&plain)?;
+        // With an exponent below all numbers it is 0 in any unit.
+        Some(scale.of(&plain).unwrap_or(number)).filter(|number| number.is_finite())
     }
 
     /// A cell with a decimal point; none where it has other marks than those of numbers.
@@ -82,6 +82,11 @@ impl DecimalMark {
             }
         }
     }
+}
+
+/// The number of a text with a decimal point; none where it is beyond all numbers.
+fn finite(plain: &str) -> Option<f64> {
+    plain.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 /// Whether a cell is a number, with whatever marks in it.
@@ -137,7 +142,7 @@ mod tests {
             assert!(is_number(cell), "{cell}");
         }
         for cell in [
-            "", "-", "nan", "inf", "1.2.3", "12:30", "e", "1 000", "0x1", "3 V",
+            "", "-", "nan", "inf", "1.2.3", "12:30", "e", "1 000", "0x1", "3 V", "1e999", "-1e999",
         ] {
             assert!(!is_number(cell), "{cell}");
         }
@@ -153,7 +158,6 @@ mod tests {
             ("−2,4", -0.0024),
             ("+,7e1", 0.007),
             ("5,", 0.005),
-            ("1e99999999999", f64::INFINITY),
             ("1e-99999999999", 0.0),
         ] {
             let scaled = DecimalMark::Comma.scaled(cell, thousandth);
@@ -161,6 +165,8 @@ mod tests {
         }
         assert_eq!(DecimalMark::Point.scaled("1,5", Scale::ONE), None);
         assert_eq!(DecimalMark::Point.scaled("e", Scale::ONE), None);
+        assert_eq!(DecimalMark::Point.scaled("1e999", Scale::ONE), None);
+        assert_eq!(DecimalMark::Point.scaled("1e99999999999", thousandth), None);
     }
 
     #[test]
