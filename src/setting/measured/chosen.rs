@@ -5,6 +5,7 @@ use super::options::{CurveOptions, Role};
 use super::remark::Remark;
 use super::sheet::{Row, Sheet};
 use super::title::Title;
+use crate::setting::unit::Unit;
 use crate::text::SpecError;
 use crate::text::nearest::did_you_mean;
 
@@ -57,9 +58,9 @@ impl<'s> Titles<'s> {
     /// The last row before the data in which a title is understood, else the last one.
     pub(super) fn of(sheet: &'s Sheet) -> Self {
         let titles = |row: &'s Row| (0..sheet.width).map(|column| Title::of(row.cell(column)));
-        let understood = |row: &&Row| {
-            (0..sheet.width).any(|column| Title::of(row.cell(column)).role().is_some())
-        };
+        // N alone may also be the unit of a force.
+        let tells = |cell: &str| Title::of(cell).role().is_some() && Unit::read(cell).is_err();
+        let understood = |row: &&Row| (0..sheet.width).any(|column| tells(row.cell(column)));
         let row = sheet.head().rfind(understood).or(sheet.head().last());
         Self {
             row,
@@ -129,7 +130,10 @@ impl Choice<'_> {
         mu = mu.filter(|_| !given(Role::Force) && !given(Role::Load));
         let mut remark = None;
         let numeric = (0..self.sheet.width).filter(|column| self.sheet.is_numeric(*column));
-        if let [first, second] = numeric.collect::<Vec<_>>()[..] {
+        // A load is neither of both.
+        if let [first, second] = numeric.collect::<Vec<_>>()[..]
+            && load.is_none()
+        {
             let other = |than: usize| if than == first { second } else { first };
             let (found, friction) = (speed, mu.or(force));
             match (found, friction) {
@@ -159,14 +163,8 @@ impl Choice<'_> {
             (None, Some(column), _) => Some(Load::Column(column)),
             (None, None, load) => load.map(Load::Fixed),
         };
-        match (mu, force) {
+        match (mu.or(force.filter(|_| load.is_some())), force) {
             (Some(friction), _) => Ok(Chosen {
-                speed,
-                friction,
-                load,
-                remark,
-            }),
-            (None, Some(friction)) if load.is_some() => Ok(Chosen {
                 speed,
                 friction,
                 load,

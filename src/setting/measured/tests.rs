@@ -55,6 +55,12 @@ fn columns_are_chosen_by_name_and_number() {
         ..options("speed=belt,force=3")
     };
     assert_eq!(table(text, &fixed).1, [0.75, 0.5]);
+    // A load in a column of its own, whose unit stands below.
+    for title in ["F_n", "F_N", "N", "normal force"] {
+        let text = format!("v;F;{title}\nm/s;N;N\n0;3;6\n0,25;2;5\n");
+        let expected = (vec![0.0, 0.25], vec![0.5, 0.4]);
+        assert_eq!(table(&text, &options("")), expected, "{title}");
+    }
     // A force that is asked for counts more than the title of a coefficient.
     let text = "v,mu,F\n0,0.5,3\n1,0.4,2\n";
     let force = CurveOptions {
@@ -193,6 +199,13 @@ const MISTAKES: &[Mistake] = &[
         "a,b,c",
         "is the speed",
         "1 a, 2 b, 3 c; say which: --columns",
+    ),
+    (
+        "v,F_n\n0,5\n1,4\n",
+        "",
+        "v,F_n",
+        "not clear which column is mu_k",
+        "--columns mu=2",
     ),
     (
         "v,F\n0,5\n1,4\n",

@@ -44,7 +44,19 @@ const FORCE: [&str; 9] = [
     "tangential",
 ];
 /// Words for the load, also as a force.
-const LOAD: [&str; 6] = ["load", "normal", "fn", "normalkraft", "normallast", "last"];
+const LOAD: [&str; 9] = [
+    "load",
+    "normal",
+    "normale",
+    "fn",
+    "normalkraft",
+    "normallast",
+    "last",
+    "auflast",
+    "anpresskraft",
+];
+/// The symbol of the load: a small one counts rows.
+const SYMBOL_OF_LOAD: &str = "N";
 
 /// A title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +98,9 @@ impl<'t> Title<'t> {
         let name = self.name.to_lowercase().replace("load cell", "");
         let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
         let has = |known: &[&str]| words.iter().any(|word| known.contains(word));
+        if self.name == SYMBOL_OF_LOAD || name.split_whitespace().any(is_normal_force) {
+            return Some(Role::Load);
+        }
         let named: [(&[&str], Role); 5] = [
             (&COEFFICIENT, Role::Mu),
             (&LOAD, Role::Load),
@@ -97,6 +112,13 @@ impl<'t> Title<'t> {
             .into_iter()
             .find_map(|(known, role)| has(known).then_some(role))
     }
+}
+
+/// Whether a word is F with the index N, such as `F_n` or `F_{N}`.
+fn is_normal_force(word: &str) -> bool {
+    let marks = |c: char| !c.is_alphanumeric();
+    let parts: Vec<&str> = word.split(marks).filter(|part| !part.is_empty()).collect();
+    parts.windows(2).any(|pair| pair == ["f", "n"])
 }
 
 #[cfg(test)]
@@ -122,6 +144,16 @@ mod tests {
             ("Normal force", Some(Load), None),
             ("load [N]", Some(Load), Some("N")),
             ("FN", Some(Load), None),
+            ("F_n", Some(Load), None),
+            ("F_N [N]", Some(Load), Some("N")),
+            ("$F_{N}$ (kN)", Some(Load), Some("kN")),
+            ("F-n", Some(Load), None),
+            ("N", Some(Load), None),
+            ("N (N)", Some(Load), Some("N")),
+            ("force normale [N]", Some(Load), Some("N")),
+            ("n", None, None),
+            ("F [N]", Some(Force), Some("N")),
+            ("F N", Some(Force), None),
             ("Load cell (V)", None, Some("V")),
             ("time [s]", None, Some("s")),
             ("index", None, None),
