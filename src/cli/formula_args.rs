@@ -38,11 +38,11 @@ pub(super) fn law(mu_k: Option<&str>, sets: &SetArgs) -> Result<LawKind, Failure
         let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
         setting.vary(&Quantity::Own(Arc::clone(own)), value);
     }
-    let missing = setting.formula().and_then(|of| of.missing(|_| false));
-    match (missing, setting.law()) {
-        (None, Some(law)) => Ok(law.clone()),
-        (error, _) => Err(error.map_or_else(no_formula, Failure::of_input)),
+    if let Some(own) = setting.formula().and_then(|of| of.missing(|_| false)) {
+        let advice = format!("add --set {}=VALUE", own.name);
+        return Err(Failure::of_input(GivenFormula::not_given(own, advice)));
     }
+    setting.law().cloned().ok_or_else(no_formula)
 }
 
 /// Refuses parts of a formula where there is none: a text that is `no_number`, and own parameters.

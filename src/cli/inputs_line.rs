@@ -29,7 +29,7 @@ pub(super) fn print(
     let given = Parameter::ALL.into_iter().filter(told);
     let law = setting.law().map(|law| ("friction", law.name().to_owned()));
     let given = given.map(|p| (p.name(), value(setting, units, p)));
-    let formula = setting.formula().map(|of| ("mu_k", of.text().to_owned()));
+    let formula = setting.formula().map(|of| ("mu_k", in_one_line(of.text())));
     let own = setting.own().map(|(own, value)| {
         let value = rounded(value, DIGITS[0]) + &unit_behind(&own.unit);
         (&*own.name, value)
@@ -44,6 +44,12 @@ pub(super) fn print(
     let follows = [period(setting, units), force(setting, units, sliding)];
     let follows: Vec<String> = follows.into_iter().flatten().collect();
     writeln!(out, "inputs: {}; {}", inputs.join(", "), follows.join(", "))
+}
+
+/// A text without the breaks of its lines.
+fn in_one_line(text: &str) -> String {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ")
 }
 
 /// The value of a parameter with its unit.

@@ -213,16 +213,16 @@ impl GivenFormula {
     }
 
     /// The first of its own parameters without a value that is not `varied`.
-    #[must_use]
-    pub fn missing(&self, varied: impl Fn(&OwnParameter) -> bool) -> Option<SpecError> {
-        let (own, _) = self
-            .own()
-            .find(|(own, value)| value.is_nan() && !varied(own))?;
-        let name = &own.name;
-        let message = format!("{name} is not given: mu_k has it as a parameter");
-        Some(SpecError::whole(message).help(format!(
-            "[friction] {name} = …, an axis, or on the command line --set {name}=…"
-        )))
+    pub(crate) fn missing(&self, varied: impl Fn(&OwnParameter) -> bool) -> Option<&OwnParameter> {
+        let mut own = self.own();
+        let (own, _) = own.find(|(own, value)| value.is_nan() && !varied(own))?;
+        Some(own)
+    }
+
+    /// The error of an own parameter without a value.
+    pub(crate) fn not_given(own: &OwnParameter, advice: String) -> SpecError {
+        let message = format!("{} is not given: mu_k has it as a parameter", own.name);
+        SpecError::whole(message).help(advice)
     }
 
     /// The law; `known` tells the parameters that other laws have too.

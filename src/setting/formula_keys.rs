@@ -116,10 +116,11 @@ impl FormulaKeys {
             return Ok(());
         };
         let given = |own: &OwnParameter| self.places.iter().any(|(of, _)| **of == *own);
-        formula.missing(given).map_or(Ok(()), |error| {
+        formula.missing(given).map_or(Ok(()), |own| {
+            let advice = format!("[friction] {0} = VALUE, or an axis {0}", own.name);
             Err(SpecError {
                 span: Some(place.clone()),
-                ..error
+                ..GivenFormula::not_given(own, advice)
             })
         })
     }

@@ -190,6 +190,21 @@ fn mistakes_in_formulas_are_told_in_their_place() {
     }
 }
 
+/// What the flag of a formula leaves open, and how it is told again.
+#[test]
+fn formulas_in_flags_are_completed_and_told_in_one_line() {
+    let folder = Folder::new();
+    let line = ["point", "--friction=formula", "--v0=0.5", "--mu-k"];
+    let open = folder.run(&[&line[..], &["a + 0.1*v"]].concat());
+    expect(&open, 2, "a is not given: mu_k has it as a parameter");
+    expect(&open, 2, "help: add --set a=VALUE");
+    let broken = folder.run(&[&line[..], &["0.3 +\n  0.1*v\r\n"]].concat());
+    expect(&broken, 0, "");
+    let told = out(&broken);
+    let first = told.lines().next().unwrap();
+    assert!(first.contains("mu_k = 0.3 + 0.1*v; free period"), "{told}");
+}
+
 /// The critical velocity by some flags of the formula law.
 fn critical_velocity(folder: &Folder, law: &[&str]) -> Value {
     let line = [
