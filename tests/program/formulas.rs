@@ -251,6 +251,25 @@ fn writings_of_one_law_have_one_critical_velocity() {
     }
 }
 
+/// A whole power is that of a number below 0, too, however large the exponent is.
+#[test]
+fn whole_powers_of_negative_numbers_are_followed() {
+    let folder = Folder::new();
+    let motion = |base: &str, exponent: &str| {
+        let start = "simulate --json --fresh --friction=formula --mu-s=0.6 --v0=0.1 --x-dot0=0 \
+            --a0=0.3";
+        let start: Vec<&str> = start.split_whitespace().collect();
+        let law = format!("0.4 + 0.1*({base})^n");
+        let output = folder.run(&[&start[..], &["--mu-k", &law, "--set", exponent]].concat());
+        expect(&output, 0, "");
+        let told: Value = serde_json::from_str(&out(&output)).unwrap();
+        ["slip_time", "period"].map(|name| told[name].as_f64().unwrap())
+    };
+    let [one, other] = [("v-1", "n=66"), ("(v-1)^33", "n=2")].map(|(of, n)| motion(of, n));
+    let off = one.iter().zip(other).map(|(a, b)| (a - b).abs() / b);
+    assert!(off.fold(0.0, f64::max) < 1e-8, "{one:?} {other:?}");
+}
+
 /// Where friction has no value, nothing is decided.
 #[test]
 fn motions_without_a_coefficient_are_undecided() {

@@ -2,6 +2,9 @@
 
 use super::{Formula, MOST_NODES, Node, Number};
 
+/// The largest whole exponent of a power by products, which has up to 31 of them.
+const MOST_WHOLE: f64 = 65536.0;
+
 /// A part of a formula: a number, or a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Operand {
@@ -158,9 +161,10 @@ impl Builder {
         }
     }
 
+    /// A power with a known exponent. Whole ones are products, which are analytic also where the
+    /// node is 0 or less; above [`MOST_WHOLE`] they would need too many nodes.
     fn known_power(&mut self, a: u8, exponent: f64) -> Operand {
-        const MOST: f64 = 64.0;
-        if exponent.trunc() != exponent || exponent.abs() > MOST {
+        if exponent.trunc() != exponent || exponent.abs() > MOST_WHOLE {
             return self.add(Node::Power(a, exponent));
         }
         let (mut square, mut left) = (Operand::Node(a), exponent.abs() as u32);
@@ -209,4 +213,50 @@ fn used(nodes: &[Node]) -> Vec<Node> {
     let before = |place: u8| needed[..usize::from(place)].iter().filter(|n| **n).count() as u8;
     let kept = nodes.iter().zip(&needed).filter(|(_, needed)| **needed);
     kept.map(|(node, _)| node.moved(before)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::FrictionLaw;
+
+    /// 2 + (v − 1)^n.
+    fn law(n: f64) -> FrictionLaw {
+        let mut builder = Builder::default();
+        let speed = builder.speed();
+        let base = builder.difference(speed, Operand::Number(1.0));
+        let power = builder.power(base, Operand::Number(n));
+        let sum = builder.sum(power, Operand::Number(2.0));
+        FrictionLaw::formula(builder.finish(sum).unwrap(), 4.0).unwrap()
+    }
+
+    #[test]
+    fn whole_powers_of_negative_numbers_are_known() {
+        for n in [2, 63, 64, 65, 66, 100, 1023, 1024, 65535, 65536, -2, -67] {
+            let law = law(n.into());
+            let off = if n < 0 { 0.8 } else { 1.5 / f64::from(n) };
+            for v in [1.0 - off, 1.0 - 0.9 * off, 1.0 + off] {
+                let near = |found: f64, expected: f64| {
+                    let allowed = 1e-9 * (1.0 + expected.abs());
+                    assert!(
+                        (found - expected).abs() < allowed,
+                        "{n} {v}: {found} {expected}"
+                    );
+                };
+                let slope = |v: f64| f64::from(n) * (v - 1.0).powi(n - 1);
+                near(law.mu_k(v), 2.0 + (v - 1.0).powi(n));
+                near(law.mu_prime(v), slope(v));
+                let to = v + 0.5 * off.min(0.1);
+                let (low, high) = law.slopes_between(v, to);
+                for v in [v, to] {
+                    let (slope, rounding) = (slope(v), 1e-9 * slope(v).abs());
+                    assert!(
+                        low <= slope + rounding && slope <= high + rounding,
+                        "{n} {v}"
+                    );
+                }
+                assert!((high - low).is_finite(), "{n} {v}");
+            }
+        }
+    }
 }
