@@ -19,8 +19,10 @@ use crate::slip::motion::Accuracy;
 /// An answer with its bounds. A decided answer bounds itself. Else the bounds come from two slow
 /// searches, from the `searches` made before and from the answers `others`.
 ///
-/// Where chance had a part in an answer, or sticks are long, it is decided only if a slow search
-/// agrees with it; an end of irregular stick-slip only if two slow searches agree.
+/// Where chance had a part in a search, sticks are long or there are other answers, it stays
+/// decided only if a slow search agrees with it; an end of irregular stick-slip, or one whose
+/// sticks have vanished, only if two slow searches agree. Elsewhere it stays decided, an end of
+/// irregular stick-slip too.
 pub(super) fn bounded(
     problem: &Problem,
     critical: CriticalVelocity,
