@@ -2,7 +2,7 @@
 
 use crate::setting::Parameter;
 use crate::setting::amount::Amount;
-use crate::setting::parameter::Group;
+use crate::setting::parameter::{Group, LARGEST};
 use crate::setting::setting_text::number;
 use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -11,9 +11,6 @@ use super::failure::Failure;
 use super::parameter_values::{TimeOr, Values, amount_of, amounts, in_units};
 use super::parameters::flag;
 use crate::text::Shown;
-
-/// The latest time that a case file takes.
-const LATEST: f64 = 1e12;
 
 /// The start and the end of a motion.
 #[derive(Debug)]
@@ -38,7 +35,7 @@ struct TimeArgs {
 /// A time of a flag in `units`.
 fn time(flag: &str, of: &Amount, units: &Units) -> Result<String, Failure> {
     let time = in_units(flag, of, units)?;
-    if (0.0..=LATEST).contains(&time) {
+    if (0.0..=LARGEST).contains(&time) {
         return Ok(number(time));
     }
     let time = Shown(time);

@@ -8,7 +8,7 @@ use crate::model::ModelError;
 
 /// The largest magnitude of any parameter; its inverse is the smallest positive one. It is far
 /// beyond any experiment, and small enough that no dimensionless group overflows.
-pub(super) const LARGEST: f64 = 1e12;
+pub(crate) const LARGEST: f64 = 1e12;
 
 /// Allowed ranges of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
