@@ -165,7 +165,7 @@ impl Feedback {
     pub fn dimensionless(&self, oscillator: &Oscillator) -> Self {
         let unit = oscillator.time_unit();
         let force = oscillator.normal_load();
-        let velocity_unit = force / oscillator.stiffness() / unit;
+        let velocity_unit = oscillator.velocity_unit();
         let Lags {
             load,
             velocity,

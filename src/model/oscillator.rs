@@ -130,6 +130,12 @@ impl Oscillator {
         self.time_unit
     }
 
+    /// The unit of velocity N0/√(κM).
+    #[must_use]
+    pub fn velocity_unit(&self) -> f64 {
+        self.normal_load / self.stiffness / self.time_unit
+    }
+
     /// The dimensionless groups at a sliding point under control (physics of the letter's Eq. 3).
     ///
     /// With dashpots the equation is the letter's too, with b + d + g in the place of b and

@@ -103,13 +103,11 @@ impl CaseUnits {
     /// The units of an oscillator.
     #[must_use]
     pub fn of(oscillator: &Oscillator) -> Self {
-        let time = oscillator.time_unit();
         let force = oscillator.normal_load();
-        let length = force / oscillator.stiffness();
         Self {
-            time,
-            length,
-            velocity: length / time,
+            time: oscillator.time_unit(),
+            length: force / oscillator.stiffness(),
+            velocity: oscillator.velocity_unit(),
             force,
         }
     }
