@@ -211,6 +211,13 @@ pub(crate) fn err(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
+/// The JSON on standard output.
+#[track_caller]
+pub(crate) fn json(output: &Output) -> serde_json::Value {
+    let read = serde_json::from_slice(&output.stdout);
+    read.unwrap_or_else(|error| panic!("{error}: {}{}", out(output), err(output)))
+}
+
 /// It ended with this code and said this, on either stream, and did not panic.
 #[track_caller]
 pub(crate) fn expect(output: &Output, code: i32, says: &str) {

@@ -16,7 +16,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use crate::chance::Chance;
 use crate::interposer::{SWEEP, copy, interposed};
 use crate::map::datasets;
-use crate::program::{Folder, err, out, output};
+use crate::program::{self, Folder, err, output};
 use disk::{Change, Disk, Name, Number, lasting};
 use slipmap::store::tiles::{Manifest, format};
 use slipmap::sweep::Piece;
@@ -419,7 +419,7 @@ fn check_map(folder: &Folder, known: &Known, told: &Told, what: &str) {
 fn check_kept(folder: &Folder, told: &Told, what: &str) -> Option<u64> {
     let status = folder.run(&["status", "map.h5", "--json"]);
     let status: serde_json::Value = if status.status.success() {
-        serde_json::from_str(&out(&status)).unwrap()
+        program::json(&status)
     } else {
         assert!(
             told.saved == 0 && !told.complete,

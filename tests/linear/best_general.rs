@@ -4,7 +4,7 @@
 
 use crate::chance::{Chance, asked};
 use crate::letter_system::letter;
-use crate::program::{Folder, err, out};
+use crate::program::{self, Folder, err, out};
 use crate::walk::Walk;
 use serde_json::Value;
 use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
@@ -288,7 +288,7 @@ fn nothing_is_better_by_a_walk() {
 fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(args);
     assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
-    serde_json::from_str(&out(&output)).expect("JSON")
+    program::json(&output)
 }
 
 fn number(value: &Value) -> f64 {

@@ -31,7 +31,7 @@ fn margins(args: &[&str]) -> Value {
     let folder = Folder::new();
     let output = folder.run(&[&["margins"], args, &["--json"]].concat());
     assert!(output.status.success(), "{}", program::err(&output));
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn units_do_not_matter() {
 fn a_point_tells_its_margins() {
     let folder = Folder::new();
     let output = folder.run(&[&["point"], &FIG_3A[..], &["--json"]].concat());
-    let point: Value = serde_json::from_str(&out(&output)).unwrap();
+    let point = program::json(&output);
     let alone = margins(&FIG_3A);
     for key in [
         "gain_margin",

@@ -168,10 +168,7 @@ fn the_program_recommends_robust_settings() {
         "--robust",
         "0.05",
     ];
-    let json: serde_json::Value = serde_json::from_str(&program::out(
-        &folder.run(&[&args[..], &["--json"]].concat()),
-    ))
-    .unwrap();
+    let json = program::json(&folder.run(&[&args[..], &["--json"]].concat()));
     let number = |path: &str| json.pointer(path).unwrap().as_f64().unwrap();
     // The setting of fastest decay loses more than half of it within 5 %, in silence.
     assert!(number("/robust/worst_abscissa_of_best") > 0.5 * number("/best/abscissa"));
@@ -181,7 +178,7 @@ fn the_program_recommends_robust_settings() {
     let late =
         "best --mu-prime=-0.3 --latency 0.1 --memory 0.3 --sensor-lag 0.1 --robust 0.05 --json";
     let late: Vec<&str> = late.split(' ').collect();
-    let late: serde_json::Value = serde_json::from_str(&program::out(&folder.run(&late))).unwrap();
+    let late = program::json(&folder.run(&late));
     assert_eq!(late["robust"]["certified"], true, "{late}");
     let worst = late["robust"]["worst_abscissa"].as_f64().unwrap();
     assert!(worst < late["robust"]["worst_abscissa_of_best"].as_f64().unwrap());

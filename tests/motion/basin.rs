@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::map::write;
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 use serde_json::Value;
 use slipmap::answers::basin::{STUDENT_95, UNSEEN_95};
 use slipmap::explore::basin::{BasinShare, Followed};
@@ -36,7 +36,7 @@ fn share(text: &str) -> BasinShare {
 fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(&[&["basin", "--json"], args].concat());
     assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&output)
 }
 
 /// A block without control on friction that grows with the speed, μ_K = μ0 + c v: its slip is a
@@ -205,7 +205,7 @@ fn threads_change_no_byte_and_starts_are_told() {
         );
         std::fs::write(folder.path().join("case.toml"), case).unwrap();
         let said = folder.run(&["simulate", "case.toml", "--json", "--fresh"]);
-        let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+        let said = program::json(&said);
         assert_eq!(said["outcome"], row[3]);
     }
     let phases = [&["basin"], &FLAGS[..], &FIG3B, &["--over", "phase"]].concat();

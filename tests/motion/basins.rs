@@ -3,8 +3,7 @@
 
 use std::path::Path;
 
-use crate::program::{Folder, err, expect, out};
-use serde_json::Value;
+use crate::program::{self, Folder, err, expect, out};
 use slipmap::model::{Dashpots, Feedback, FrictionLaw};
 use slipmap::setting::SweepSpec;
 use slipmap::slip::cycle::after_release;
@@ -106,7 +105,7 @@ fn every_cell_is_what_simulate_says() {
             std::fs::write(folder.path().join("case.toml"), &case).unwrap();
             let said = folder.run(&["simulate", "case.toml", "--json", "--fresh"]);
             assert_eq!(err(&said), "", "{case}");
-            let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+            let said = program::json(&said);
             assert_eq!(said["outcome"], found[cell].name(), "{case}");
             assert_eq!(status[cell] & 4 != 0, found[cell] == Outcome::Undecided);
             for field in plan.spec.fields.iter().filter(|f| f.of_motion()) {

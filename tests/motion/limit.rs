@@ -1,8 +1,7 @@
 //! The limit of a short delay: the letter's Fig. 4 as a map and at one point, against reference
 //! values; its mistakes.
 
-use crate::program::{Folder, err, expect, out};
-use serde_json::Value;
+use crate::program::{self, Folder, err, expect};
 use slipmap::model::stop::Stop;
 use slipmap::setting::{Field, SweepSpec};
 use slipmap::sweep::Plan;
@@ -60,8 +59,7 @@ fn a_map_and_single_points_are_the_reference() {
     for (i, [ratio, gamma, ..]) in rows.iter().enumerate() {
         let [gamma, ratio] = [gamma, ratio].map(ToString::to_string);
         let args = ["vc", "--protocol", "limit", "--json", "--gamma", &gamma];
-        let said = out(&folder.run(&[&args[..], &["--mu-ratio", &ratio]].concat()));
-        let point: Value = serde_json::from_str(&said).unwrap();
+        let point = program::json(&folder.run(&[&args[..], &["--mu-ratio", &ratio]].concat()));
         for (name, cells) in &columns {
             // The reader of JSON is exact to the last bit but one.
             let ratio = point[name].as_f64().unwrap() / cells[i];

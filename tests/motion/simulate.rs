@@ -1,6 +1,6 @@
 //! `slipmap simulate`: what it says, what it writes, and the events of the letter's Fig. 3.
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 use serde_json::Value;
 
 const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
@@ -11,7 +11,7 @@ fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(&[&["simulate", "--json"], args].concat());
     assert_eq!(err(&output), "");
     assert_eq!(output.status.code(), Some(0));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&output)
 }
 
 /// (t, a) of all events of a kind.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
 const FIG3B: &str = include_str!("../../sweeps/fig3b.toml");
@@ -24,7 +24,7 @@ fn simulated(folder: &Folder, args: &[&str]) -> Value {
     ];
     let output = folder.run(&[&["simulate"], args, &trace].concat());
     assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 fn times(told: &Value, kind: &str) -> Vec<f64> {

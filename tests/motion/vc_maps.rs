@@ -5,8 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::program::{Folder, err, out};
-use serde_json::Value;
+use crate::program::{self, Folder, err, out};
 use slipmap::critical::GRAZE_PRECISION;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use slipmap::model::stop::Stop;
@@ -119,7 +118,7 @@ fn every_cell_is_what_vc_says() {
             let flags = flags(&plan, cell);
             let said = folder.run(&flags.iter().map(String::as_str).collect::<Vec<_>>());
             assert_eq!(err(&said), "", "{flags:?}");
-            let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+            let said = program::json(&said);
             assert_eq!(said["outcome"], outcomes[cell], "{flags:?}");
             assert_eq!(said["method"], methods[cell], "{flags:?}");
             assert_eq!(
@@ -456,7 +455,7 @@ fn the_worst_phase_in_a_map() {
         "--alpha-n=-10",
     ];
     let said = folder.run(&[&flags[..], &law].concat());
-    let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+    let said = program::json(&said);
     assert!((said["vc"].as_f64().unwrap() - worst).abs() <= 1e-15 * worst);
     write(
         &plan(&sweep("", "switch_on_phase = [0.0, 2.0, 3.5]\n")),
@@ -515,8 +514,7 @@ fn vc_needs_no_delay_without_control() {
     let folder = Folder::new();
     let coulomb = ["vc", "--json", "--friction=coulomb", "--mu0=0.5"];
     let answer = |more: &[&str]| {
-        let said = out(&folder.run(&[&coulomb[..], more].concat()));
-        let mut value: Value = serde_json::from_str(&said).unwrap();
+        let mut value = program::json(&folder.run(&[&coulomb[..], more].concat()));
         let inputs = value.as_object_mut().unwrap().remove("inputs").unwrap();
         (inputs["tau"].as_f64().unwrap(), value)
     };

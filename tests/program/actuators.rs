@@ -1,7 +1,7 @@
 //! Limits of actuators and dashpots, given to the program: what they do to a motion, and what is
 //! refused.
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 const CASE: &str = "switch_on = 70.0\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n\
     [fixed]\nv0 = 0.1\nalpha_n = -10.0\ntau = 0.5\nload_min = 0.6\n\
@@ -27,7 +27,7 @@ fn a_load_that_is_held_is_told() {
     let folder = Folder::with(&[("case.toml", CASE)]);
     let told = folder.run(&["simulate", "case.toml", "--json"]);
     expect(&told, 0, "");
-    let told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
+    let told = program::json(&told);
     assert_eq!(told["n_min"], 0.6);
     let [time, share] = ["time_at_limit", "share_at_limit"].map(|key| told[key].as_f64().unwrap());
     let decided = told["decided"].as_f64().unwrap();
@@ -160,7 +160,7 @@ fn stick_slip_persists_up_to_the_largest_pull() {
         ];
         let told = folder.run(&flags("vc", &control));
         expect(&told, 0, "");
-        serde_json::from_str::<serde_json::Value>(&out(&told)).unwrap()
+        program::json(&told)
     };
     let far = of("30");
     assert!(
@@ -181,7 +181,7 @@ fn a_load_that_is_held_never_lifts_off() {
         let control = ["--alpha-n=-10", "--tau", "5", "--load-min", least, "--json"];
         let told = folder.run(&flags("vc", &control));
         expect(&told, 0, "");
-        let told = serde_json::from_str::<serde_json::Value>(&out(&told)).unwrap();
+        let told = program::json(&told);
         assert_ne!(told["outcome"], "lift-off", "{told}");
         assert!(told["v_liftoff"].is_null(), "{told}");
     }
@@ -193,8 +193,7 @@ fn a_load_that_is_held_never_lifts_off() {
         "0.95",
         "--json",
     ];
-    let told = out(&folder.run(&flags("vc", &control)));
-    let told = serde_json::from_str::<serde_json::Value>(&told).unwrap();
+    let told = program::json(&folder.run(&flags("vc", &control)));
     assert_eq!(told["n_min"], 0.95, "{told}");
 }
 
@@ -215,6 +214,6 @@ fn critical_velocities_are_looked_for_within_the_limits() {
     ];
     let told = folder.run(&flags("vc", &control));
     expect(&told, 0, "--v0 is left aside");
-    let told = serde_json::from_str::<serde_json::Value>(&out(&told)).unwrap();
+    let told = program::json(&told);
     assert_eq!(told["windows"][0][0], 0.2, "{told}");
 }

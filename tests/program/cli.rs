@@ -5,7 +5,7 @@
 use std::process::Command;
 
 use crate::map::{self, edit, settle};
-use crate::program::{Folder, err, expect, out, output, pixels};
+use crate::program::{self, Folder, err, expect, out, output, pixels};
 
 const SMALL: &str = "title = \"small\"\n[axes]\nmu_prime = [-0.1, -0.3]\nalpha_n = { from = -3, to = 1, points = 41 }\ntau = { from = 0, to = 12, points = 61 }\n";
 /// Large enough to be interrupted on any machine.
@@ -346,7 +346,7 @@ fn point_says_everything_for_people_and_programs() {
     ];
     insta::assert_snapshot!("point", out(&folder.run(&args)));
     let json = folder.run(&[&args[..], &["--json"]].concat());
-    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let value = program::json(&json);
     let scientific = folder.run(&[
         "point",
         "--mu-prime",
@@ -371,12 +371,12 @@ fn point_says_everything_for_people_and_programs() {
     near(&value["delay_margin"], 4.32875 - 4.312957, 5e-6);
     assert_eq!(value["delay_margin_kind"], "finite");
     let open = folder.run(&["point", "--mu-prime", "0.3", "--tau", "2", "--json"]);
-    let value: serde_json::Value = serde_json::from_slice(&open.stdout).unwrap();
+    let value = program::json(&open);
     assert!(value["stable_delays"][0][1].is_null() && value["delay_margin"].is_null());
     assert_eq!(value["delay_margin_kind"], "infinite");
     // Without control b < 0 is unstable at every delay: [] is none.
     let never = folder.run(&["point", "--mu-prime", "-0.3", "--tau", "2", "--json"]);
-    let value: serde_json::Value = serde_json::from_slice(&never.stdout).unwrap();
+    let value = program::json(&never);
     assert_eq!(value["stable_delays"], serde_json::json!([]));
     assert_eq!(value["delay_margin_kind"], "infinite");
     assert_eq!(value["delay_margin_sign"], -1);
@@ -389,7 +389,7 @@ fn point_lists_the_rightmost_roots() {
     let json = |args: &[&str]| -> serde_json::Value {
         let output = folder.run(&[&["point", "--json", "--mu-prime", "-0.3"], args].concat());
         assert_eq!(err(&output), "");
-        serde_json::from_slice(&output.stdout).unwrap()
+        program::json(&output)
     };
     for tau in ["1e-9", "0.5", "4", "60", "3000"] {
         let value = json(&["--tau", tau, "--alpha-v", "-0.4", "--roots", "20"]);
@@ -448,7 +448,7 @@ fn point_has_the_roots_of_the_reference() {
             .flat_map(|(f, c)| [f, c])
             .collect();
         let output = folder.run(&[&["point", "--json", "--roots", "1"], given.as_slice()].concat());
-        let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let value = program::json(&output);
         assert_eq!(value["n_unstable"].to_string(), cells[4], "{row}");
         assert_eq!(value["certified"], true, "{row}");
         for (name, cell) in [("abscissa", cells[5]), ("frequency", cells[6])] {
@@ -524,7 +524,7 @@ fn decay_rates_go_through_every_command() {
 fn point_agrees_with_itself_in_other_units() {
     let folder = Folder::new();
     let json = |args: &[&str]| -> serde_json::Value {
-        serde_json::from_slice(&folder.run(&[&["point", "--json"], args].concat()).stdout).unwrap()
+        program::json(&folder.run(&[&["point", "--json"], args].concat()))
     };
     let plain = json(&[
         "--mu-prime",
@@ -594,7 +594,7 @@ fn best_says_where_decay_is_fastest() {
     let json = |args: &[&str]| -> serde_json::Value {
         let output = folder.run(&[&["best", "--json"], args].concat());
         assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-        serde_json::from_slice(&output.stdout).unwrap()
+        program::json(&output)
     };
     let near = |value: &serde_json::Value, expected: f64| {
         let value = value.as_f64().unwrap();
@@ -667,7 +667,7 @@ fn best_without_a_stable_setting_says_so() {
         "no stable setting in the ranges; the least unstable one is",
     );
     let json = folder.run(&[&args[..], &["--json"]].concat());
-    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let value = program::json(&json);
     assert!(value["best"]["relaxation_time"].is_null());
     assert!(value["best"]["abscissa"].as_f64().unwrap() > 0.0);
     assert_eq!(value["regions"].as_array().unwrap().len(), 0);
@@ -792,7 +792,7 @@ fn a_measured_friction_law_goes_through_every_command() {
     let friction = ["--friction", "table", "--v0", "0.5", "--table"];
     let json = |args: &[&str]| -> serde_json::Value {
         let output = folder.run(&[&point[..], args].concat());
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", err(&output)))
+        program::json(&output)
     };
     let table = json(&[&friction[..], &["curve.csv"]].concat());
     let plain = json(&["--mu-prime", "-0.25", "--mu-k", "0.375"]);

@@ -4,7 +4,7 @@
 use std::process::Output;
 
 use crate::curve_files::{CURVES, Curve, MU_K, Read, SPEEDS, Said, path, says};
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 /// The folder of a test with all curves in it.
 fn folder() -> Folder {
@@ -78,7 +78,7 @@ fn a_flag_reads_every_curve() {
         let output = folder.run(&[&usual[..], &[curve.file], &more[..]].concat());
         check(&output, curve, 0);
         if code(curve) == 0 {
-            let told: serde_json::Value = serde_json::from_str(&out(&output)).unwrap();
+            let told = program::json(&output);
             assert_eq!(
                 told["inputs"]["speeds"],
                 serde_json::json!(SPEEDS),
@@ -127,7 +127,7 @@ fn cases_and_settings_read_curves() {
         .replace("v0", "tau = 0\nv0");
     std::fs::write(folder.path().join("setting.toml"), setting).unwrap();
     let output = folder.run(&["point", "--setting", "setting.toml", "--json"]);
-    let told: serde_json::Value = serde_json::from_str(&out(&output)).unwrap();
+    let told = program::json(&output);
     assert_eq!(told["inputs"]["mu_k"], serde_json::json!(MU_K), "{told}");
 }
 

@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 const LAW: &str = "law = \"formula\"\nmu_k = \"mu0 + (mu_s - mu0)*exp(-(v/v_s)^delta) + sigma*v\"\n\
     mu0 = 0.3\nv_s = 0.2\n";
@@ -12,7 +12,7 @@ const LAW: &str = "law = \"formula\"\nmu_k = \"mu0 + (mu_s - mu0)*exp(-(v/v_s)^d
 fn point(folder: &Folder, flags: &[&str]) -> Value {
     let output = folder.run(&[&["point", "--json"], flags].concat());
     expect(&output, 0, "");
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 /// The same law by its name and as a formula, and its slope worked out here.
@@ -218,7 +218,7 @@ fn critical_velocity(folder: &Folder, law: &[&str]) -> Value {
     ];
     let output = folder.run(&[&line[..], law].concat());
     expect(&output, 0, "");
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 /// The same law in several writings, narrow beside the velocities of the block: parts of two of
@@ -262,7 +262,7 @@ fn whole_powers_of_negative_numbers_are_followed() {
         let law = format!("0.4 + 0.1*({base})^n");
         let output = folder.run(&[&start[..], &["--mu-k", &law, "--set", exponent]].concat());
         expect(&output, 0, "");
-        let told: Value = serde_json::from_str(&out(&output)).unwrap();
+        let told = program::json(&output);
         ["slip_time", "period"].map(|name| told[name].as_f64().unwrap())
     };
     let [one, other] = [("v-1", "n=66"), ("(v-1)^33", "n=2")].map(|(of, n)| motion(of, n));
@@ -320,7 +320,7 @@ fn margins_of_v0_end_where_steep_laws_become_unstable() {
         let flags: Vec<&str> = given.into_iter().chain(control).chain(more).collect();
         let output = folder.run(&[&["margins", "--json", "--v0=0.1"], &flags[..]].concat());
         expect(&output, 0, "");
-        let told: Value = serde_json::from_str(&out(&output)).unwrap();
+        let told = program::json(&output);
         let margin = &told["v0_margin"];
         let lower = margin["from"].as_f64().unwrap();
         assert_eq!(told["undecided"], Value::Array(vec![]), "{told}");

@@ -308,11 +308,11 @@ fn a_case_without_a_start_is_disturbed_and_says_so() {
     let stable = folder.run(&["simulate", "stable.toml", "--json"]);
     let said = "begins with x_dot0 = 0.3535, 1 % faster than it is pulled";
     expect(&stable, 0, said);
-    let told: Value = serde_json::from_str(&out(&stable)).unwrap();
+    let told = program::json(&stable);
     assert_eq!(told["outcome"], "sliding");
     assert!(told["settle_time"].as_f64().unwrap() >= 0.0, "{told}");
     let unstable = folder.run(&["simulate", "unstable.toml", "--json"]);
-    let told: Value = serde_json::from_str(&out(&unstable)).unwrap();
+    let told = program::json(&unstable);
     assert_ne!(told["outcome"], "undecided");
     assert_ne!(told["outcome"], "sliding");
 }
@@ -344,7 +344,7 @@ fn facts_come_as_json_with_a_version() {
     let json = |args: &[&str]| -> Value {
         let output = folder.run(args);
         assert_eq!(output.status.code(), Some(0), "{args:?} {}", err(&output));
-        serde_json::from_str(&out(&output)).unwrap()
+        program::json(&output)
     };
     let law = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];
     let point = ["--mu-prime", "-0.3", "--tau", "2", "--json"];
@@ -542,10 +542,8 @@ fn a_cell_brings_its_start_its_table_and_its_phase() {
     let folder = Folder::with(&[("moving.toml", &moving), ("switched.toml", switched)]);
     expect(&folder.run(&["run", "moving.toml"]), 0, "2 cells");
     expect(&folder.run(&["run", "switched.toml"]), 0, "2 cells");
-    let json = |args: &str| -> Value {
-        let output = folder.run(&args.split(' ').collect::<Vec<_>>());
-        serde_json::from_str(&out(&output)).unwrap_or_else(|_| panic!("{args} {}", err(&output)))
-    };
+    let json =
+        |args: &str| -> Value { program::json(&folder.run(&args.split(' ').collect::<Vec<_>>())) };
     let map = hdf5::File::open(folder.path().join("moving.h5")).unwrap();
     let settled = map
         .dataset("settle_time")
@@ -699,7 +697,7 @@ fn schemas_say_of_each_key_what_null_means() {
         "vc",
         "verify",
     ] {
-        let schema = serde_json::from_str(&out(&folder.run(&["schema", command]))).unwrap();
+        let schema = program::json(&folder.run(&["schema", command]));
         let mut found = Vec::new();
         properties(&schema, &mut found);
         for (name, property, required) in &found {
@@ -932,7 +930,6 @@ fn numbers_are_short() {
     for says in ["vc 0.344467", "vc_lower 0.34446", "windows [[0,0.344467]]"] {
         expect(&told, 0, says);
     }
-    let json: Value =
-        serde_json::from_slice(&folder.run(&[&vc[..], &["--json"]].concat()).stdout).unwrap();
+    let json = program::json(&folder.run(&[&vc[..], &["--json"]].concat()));
     assert!(json["vc"].to_string().len() > 12, "{json}");
 }

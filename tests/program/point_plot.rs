@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 /// Roots that the picture shows, pairs counted once.
 const ROOTS: usize = 14;
@@ -51,7 +51,7 @@ fn drawn(folder: &Folder, args: &[&str]) -> (Value, Svg) {
     let more = folder.run(&[&["point"], args, &["--json", "--roots", &roots]].concat());
     assert_eq!(err(&more), "");
     let text = std::fs::read_to_string(folder.path().join("point.svg")).unwrap();
-    (serde_json::from_slice(&more.stdout).unwrap(), Svg(text))
+    (program::json(&more), Svg(text))
 }
 
 /// The straight line through (p, q) and another such pair.

@@ -7,7 +7,7 @@ use std::process::Output;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use crate::program::{Folder, LONGEST, Started, err, expect, out};
+use crate::program::{self, Folder, LONGEST, Started, err, expect, out};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use slipmap::linear::lobes::LobeControl;
@@ -221,7 +221,7 @@ fn commands_of_settings_repeat_their_numbers() {
         let args: Vec<_> = command.split(' ').skip(1).chain(["--json"]).collect();
         let output = folder.run(&args);
         assert!(output.status.success(), "{command}: {}", err(&output));
-        serde_json::from_str(&out(&output)).unwrap()
+        program::json(&output)
     };
     let most = value("finite", "most").0;
     assert_eq!(answer("finite")["n_unstable"].as_f64(), Some(most));
@@ -639,7 +639,7 @@ fn the_same_command_goes_on_with_what_is_kept() {
         std::fs::write(&picture, drawn_by_an_earlier_version(&drawn)).unwrap();
         let again = folder.run(&AGAIN);
         assert_eq!(again.status.code(), Some(0), "{}", err(&again));
-        let told: Value = serde_json::from_str(&out(&again)).unwrap();
+        let told = program::json(&again);
         assert_eq!(told["claims"], runs().json["claims"]);
         assert_eq!(names.map(|name| written(name).unwrap()), before);
         assert_eq!(std::fs::read_to_string(&picture).unwrap(), drawn);

@@ -5,7 +5,7 @@
 
 use serde_json::Value;
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 const CURVE: &str =
     "speed (m/s), mu_k\n0, 0.5\n0.05, 0.45\n0.1, 0.41\n0.2, 0.36\n0.5, 0.32\n1, 0.3\n";
@@ -27,7 +27,7 @@ const RIG: [&str; 12] = [
 fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(args);
     assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 /// Numbers and units behind a name of a text.

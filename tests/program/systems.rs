@@ -2,7 +2,7 @@
 //! carries, mistakes, and what the JSON says of what there is not.
 
 use crate::general_rows::{Row, rows};
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 use serde_json::Value;
 
 /// Ends of stable intervals and first crossings agree to this, relative.
@@ -11,7 +11,7 @@ const ENDS: f64 = 1e-9;
 fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(&[&["point", "--json"], args].concat());
     assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 fn near(found: &Value, expected: f64, allowed: f64, place: &str) {
@@ -404,7 +404,7 @@ fn descriptions(of: &Value, into: &mut String) {
 fn the_schema_says_what_null_means() {
     let folder = Folder::new();
     let output = folder.run(&["schema", "point"]);
-    let schema: Value = serde_json::from_str(&out(&output)).unwrap();
+    let schema = program::json(&output);
     let mut nullable = 0;
     for (part, schema) in schema["components"]["schemas"].as_object().unwrap() {
         let all = schema["allOf"].as_array().into_iter().flatten();
@@ -597,7 +597,7 @@ fn a_map_is_complete_without_the_file_of_its_system() {
     run(&["--quiet"]);
     assert!(run(&[]).contains("already complete"));
     let info = folder.run(&["info", "map.h5", "--json"]);
-    let info: Value = serde_json::from_str(&out(&info)).unwrap();
+    let info = program::json(&info);
     let system = info["origin"]["system"].as_str().unwrap();
     assert!(system.contains("Q = -width"), "{system}");
     assert_eq!(info["units"]["width"], "N m-1");
@@ -764,7 +764,7 @@ fn h5py_reads_a_map_of_turning() {
         .current_dir(folder.path());
     let output = crate::program::output(&mut python);
     assert!(output.status.success(), "{}", err(&output));
-    let read: Value = serde_json::from_str(&out(&output)).unwrap();
+    let read = program::json(&output);
     let system: slipmap::setting::system::SystemModel =
         read["system"].as_str().unwrap().parse().unwrap();
     assert_eq!(

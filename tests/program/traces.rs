@@ -1,7 +1,7 @@
 //! A case and its trace in every command: told beforehand, told afterwards, drawn, verified.
 
 use crate::map::edit;
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 use hdf5::File;
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ fn folder() -> Folder {
 fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(&[args, &["--json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
+    program::json(&output)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::program::{Folder, err, expect, out};
+use crate::program::{self, Folder, err, expect, out};
 
 const RIG: &str = "--friction weakening --mu0 0.5 --v-s 50mm/s --mass 2.4kg --stiffness 9.5N/mm \
     --normal-load 50N --v0 1mm/s --alpha-n=-5.5N/mm --tau 5ms";
@@ -15,7 +15,7 @@ fn words(line: &str) -> Vec<&str> {
 fn json(folder: &Folder, line: &str) -> Value {
     let output = folder.run(&words(&format!("{line} --json")));
     expect(&output, 0, "");
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 #[test]

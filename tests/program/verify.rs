@@ -6,7 +6,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use crate::map::{self, edit};
-use crate::program::{Folder, expect, out};
+use crate::program::{self, Folder, expect, out};
 use slipmap::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::maps::check::{Effort, Program, check};
 use slipmap::setting::Field;
@@ -54,7 +54,7 @@ fn sound_maps_pass() {
             expect(&verified, 0, question);
         }
         let json = folder.run(&["verify", "map.h5", "--json"]);
-        let json: serde_json::Value = serde_json::from_str(&out(&json)).unwrap();
+        let json = program::json(&json);
         assert_eq!(json["sound"], true, "{json}");
         assert_eq!(json["faults"], serde_json::json!([]));
     }
@@ -372,7 +372,7 @@ fn missing_tiles_are_said_to_be_missing() {
     expect(&folder.run(&merge), 0, "of them missing");
     let verified = folder.run(&["verify", "part.h5", "--tiles", "6", "--json"]);
     expect(&verified, 0, "tiles_absent");
-    let told: serde_json::Value = serde_json::from_str(&out(&verified)).unwrap();
+    let told = program::json(&verified);
     let number = |key: &str| told[key].as_u64().unwrap();
     assert_eq!(number("tiles"), number("tiles_equal"), "{told}");
     assert!(number("tiles") > 0 && number("tiles_absent") > 0, "{told}");

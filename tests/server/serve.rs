@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 #[cfg(target_os = "linux")]
 use crate::processes::peak;
-use crate::program::{Folder, err, out, signal};
+use crate::program::{self, Folder, err, signal};
 use crate::server::{Answer, Serving, decoded};
 use crate::with_many_connections;
 use slipmap::linear::Crossings;
@@ -28,7 +28,7 @@ fn with_command(folder: &Folder, answer: &Answer) -> [serde_json::Value; 2] {
     );
     let words: Vec<&str> = command.as_str().unwrap().split(' ').skip(1).collect();
     let told = folder.run(&[&words[..], &["--json"]].concat());
-    let mut told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
+    let mut told = program::json(&told);
     for of_commands in ["schema_version", "inputs"] {
         told.as_object_mut().unwrap().remove(of_commands);
     }
@@ -123,7 +123,7 @@ fn a_motion_is_what_the_command_says() {
     std::fs::write(folder.path().join("case.toml"), case).unwrap();
     let words = head["command"].as_str().unwrap().split(' ').skip(1);
     let told = folder.run(&[&words.collect::<Vec<_>>()[..], &["--json"]].concat());
-    let told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
+    let told = program::json(&told);
     for (key, value) in told.as_object().unwrap() {
         let of_command = ["trace", "schema_version", "inputs"].contains(&key.as_str());
         assert!(of_command || head[key] == *value, "{key}");

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use crate::chance::Chance;
 use crate::map;
 use crate::processes::{self, until};
-use crate::program::{Folder, Started, err, expect, signal};
+use crate::program::{self, Folder, Started, err, expect, signal};
 use crate::server::Serving;
 use crate::with_many_connections;
 use brute::{Window, check, complete};
@@ -338,7 +338,7 @@ fn a_cell_says_how_to_ask_for_it() {
         assert_eq!(point["tau"], cell["axes"]["tau"]);
         let command = cell["command"].as_str().unwrap();
         let args: Vec<&str> = command.split(' ').skip(1).chain(["--json"]).collect();
-        let said: Value = serde_json::from_slice(&folder.run(&args).stdout).unwrap();
+        let said = program::json(&folder.run(&args));
         assert_eq!(said["n_unstable"], cell["fields"]["n_unstable"]);
         stable += u64::from(point["stable"] == true);
     }

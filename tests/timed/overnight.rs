@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use crate::alone;
 use crate::chance::{Chance, asked};
 use crate::map::datasets;
-use crate::program::{Folder, LONGEST, ends_within, err, expect, out};
+use crate::program::{self, Folder, LONGEST, ends_within, err, expect, out};
 use slipmap::maps::assembly::Missing;
 use slipmap::maps::maker::{Job, Merge, make, make_in_memory, make_shard, merge};
 use slipmap::store::tiles::{Manifest, shards};
@@ -76,7 +76,7 @@ fn tile_files(map: &Path) -> Vec<PathBuf> {
 
 fn status(folder: &Folder, map: &str) -> serde_json::Value {
     let output = folder.run(&["status", map, "--json"]);
-    serde_json::from_str(&out(&output)).unwrap()
+    program::json(&output)
 }
 
 fn cells_done(folder: &Folder, map: &str) -> u64 {
