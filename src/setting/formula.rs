@@ -198,7 +198,7 @@ impl GivenFormula {
     }
 
     /// Gives an own parameter a dimension in these units.
-    pub(super) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
+    pub(crate) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
         let model = Arc::make_mut(&mut self.model);
         model.own[own.index] = Arc::new(own.measured(units.of(dimension), dimension));
     }

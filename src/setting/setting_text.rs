@@ -1,6 +1,7 @@
 //! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`. Reading them gives the same
 //! setting.
 
+use super::formula_keys::UNITS;
 use super::law_kind::LawKind;
 use super::parameter::{Group, Parameter};
 use super::units::Units;
@@ -52,6 +53,7 @@ pub(crate) fn setting_text(
             for (own, value) in setting.own().filter(|(_, value)| !value.is_nan()) {
                 text += &format!("{} = {}\n", own.name, number(value));
             }
+            text += &own_units(setting);
         }
         if let LawKind::Table(points) = law {
             for (column, values) in [
@@ -65,6 +67,18 @@ pub(crate) fn setting_text(
     }
     text += &units_text(units);
     text.trim_start().to_owned()
+}
+
+/// The units of own parameters, as a key of `[friction]`; empty where none has a unit.
+fn own_units(setting: &Setting) -> String {
+    let measured = setting.own().filter(|(own, _)| own.dimension != [0; 3]);
+    let units: Vec<String> = measured
+        .map(|(own, _)| format!("{} = \"{}\"", own.name, own.unit))
+        .collect();
+    match units.is_empty() {
+        true => String::new(),
+        false => format!("{UNITS} = {{ {} }}\n", units.join(", ")),
+    }
 }
 
 fn units_text(units: &Units) -> String {

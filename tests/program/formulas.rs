@@ -347,3 +347,39 @@ fn motions_without_a_coefficient_are_undecided() {
     let answer = critical_velocity(&folder, &["--mu-k", "0.5-0.2*exp(-0.1/v)"]);
     assert_eq!(answer["decided"], false, "{answer}");
 }
+
+/// A parameter with a unit is one in the declared units, or the SI; a saved setting keeps it.
+#[test]
+fn own_parameters_have_units_in_flags() {
+    let folder = Folder::new();
+    let law = ["--friction", "formula", "--mu-k=mu0-sigma*v", "--mu0=0.3"];
+    let told = |more: &[&str]| out(&folder.run(&[&["point"], &law[..], more].concat()));
+    let si = told(&["--set", "sigma=0.1 s/m", "--v0=500mm/s"]);
+    assert!(si.contains("sigma = 0.1 m-1 s;"), "{si}");
+    assert!(si.contains("mu_prime         -0.1 m-1 s"), "{si}");
+    let slow = told(&["--set=sigma=100s/km", "--units=N,mm,s", "--v0=500"]);
+    assert!(slow.contains("sigma = 0.0001 mm-1 s;"), "{slow}");
+    assert!(slow.contains("mu_k             0.25\n"), "{slow}");
+    let save = "best --v0=1m/s --control=load --save=saved.toml --set=sigma=0.1s/m";
+    let save: Vec<&str> = save.split(' ').chain(law).collect();
+    expect(&folder.run(&save), 0, "saved.toml");
+    let saved = out(&folder.run(&["point", "--setting", "saved.toml"]));
+    assert!(saved.contains("sigma = 0.1 m-1 s;"), "{saved}");
+    for (more, says) in [
+        (&["--set=sigma=0.1s/q"][..], "no unit \"q\" is known"),
+        (
+            &["--set=sigma=0.1s/m", "--units=dimensionless"],
+            "--set sigma=0.1 s/m: a number has a unit",
+        ),
+        (
+            &["--set=sigma=1e11km"],
+            "sigma = 100000000000000 is outside",
+        ),
+        (&["--set=sigma=s/m"], "must be a finite number"),
+    ] {
+        let refused = folder.run(&[&["point", "--v0=0.5"], &law[..], more].concat());
+        expect(&refused, 2, says);
+    }
+    let system = ["point", "--system=turning", "--tau=1", "--set=zeta=1s"];
+    expect(&folder.run(&system), 2, "a number has a unit");
+}
