@@ -1,7 +1,7 @@
 //! The friction law of `--friction formula --mu-k EXPRESSION --set NAME=VALUE`.
 
 use crate::setting::Setting;
-use crate::setting::formula::GivenFormula;
+use crate::setting::formula::{EXAMPLE, GivenFormula};
 use crate::setting::law_kind::LawKind;
 use crate::setting::quantity::Quantity;
 use crate::setting::units::Units;
@@ -24,8 +24,7 @@ pub(super) fn law(mu_k: Option<&str>, sets: &SetArgs, units: &Units) -> Result<L
     let Some(text) = mu_k else {
         return Err(Failure::bad_input_with_help(
             "--mu-k is not given: the formula law is an expression in the speed v",
-            "--mu-k 'mu0 + (mu_s - mu0)*exp(-v/v_s)' --mu0 0.3 --v-s 0.1; other names by \
-             --set NAME=VALUE",
+            format!("--mu-k '{EXAMPLE}' --mu0 0.3 --v-s 0.1; other names by --set NAME=VALUE"),
         ));
     };
     let formula = GivenFormula::read(text);
