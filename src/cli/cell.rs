@@ -23,7 +23,7 @@ use crate::text::nearest::did_you_mean;
 use super::failure::Failure;
 use super::open::tell_partial;
 use super::output::warn_beyond_curve;
-use super::parameter_values::{on_one_line, quantity_in_units};
+use super::parameter_values::{named_amount, quantity_in_units};
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -48,17 +48,9 @@ pub(super) struct At {
 
 /// Reads a name and a value. Whether the axis exists depends on the map.
 pub(super) fn parse_at(text: &str) -> Result<At, String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
-    let value = Amount::read(value).transpose();
-    let value = value
-        .map_err(|error| on_one_line(&error))?
-        .filter(Amount::is_finite);
-    Ok(At {
-        name: name.trim().replace('-', "_"),
-        value: value.ok_or("the value after = must be a finite number")?,
-    })
+    let (name, value) = named_amount(text, "AXIS=VALUE, for example mu_prime=-0.3")?;
+    let name = name.replace('-', "_");
+    Ok(At { name, value })
 }
 
 impl At {

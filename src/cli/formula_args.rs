@@ -1,11 +1,10 @@
 //! The friction law of `--friction formula --mu-k EXPRESSION --set NAME=VALUE`.
 
-use std::sync::Arc;
-
 use crate::setting::Setting;
-use crate::setting::formula::GivenFormula;
+use crate::setting::formula::{EXAMPLE, GivenFormula};
 use crate::setting::law_kind::LawKind;
 use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
 use crate::text::SpecError;
 
 use super::failure::Failure;
@@ -19,24 +18,29 @@ fn no_formula() -> Failure {
     )
 }
 
-/// The law of the expression `mu_k`, with values of its own parameters.
-pub(super) fn law(mu_k: Option<&str>, sets: &SetArgs) -> Result<LawKind, Failure> {
+/// The law of the expression `mu_k`, with values of its own parameters in `units`. They have the
+/// units in which they are given.
+pub(super) fn law(mu_k: Option<&str>, sets: &SetArgs, units: &Units) -> Result<LawKind, Failure> {
     let Some(text) = mu_k else {
         return Err(Failure::bad_input_with_help(
             "--mu-k is not given: the formula law is an expression in the speed v",
-            "--mu-k 'mu0 + (mu_s - mu0)*exp(-v/v_s)' --mu0 0.3 --v-s 0.1; other names by \
-             --set NAME=VALUE",
+            format!("--mu-k '{EXAMPLE}' --mu0 0.3 --v-s 0.1; other names by --set NAME=VALUE"),
         ));
     };
     let formula = GivenFormula::read(text);
-    let formula = formula.map_err(|error| Failure::in_file(error, "--mu-k", text))?;
-    let mut setting = Setting::new(Some(LawKind::Formula(formula.clone())));
+    let mut formula = formula.map_err(|error| Failure::in_file(error, "--mu-k", text))?;
+    let mut given = Vec::new();
     for set in sets.each()? {
-        let own = formula.own_named(&set.name);
+        let own = formula.own_named(&set.name).cloned();
         let own = own.ok_or_else(|| set.refused(formula.unknown(&set.name)))?;
-        let value = own.check(set.value);
+        let value = own.check(set.value(units)?);
         let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
-        setting.vary(&Quantity::Own(Arc::clone(own)), value);
+        formula.measure(&own, set.amount.dimension(), units);
+        given.push((Quantity::Own(own), value));
+    }
+    let mut setting = Setting::new(Some(LawKind::Formula(formula)));
+    for (own, value) in given {
+        setting.vary(&own, value);
     }
     if let Some(own) = setting.formula().and_then(|of| of.missing(|_| false)) {
         let advice = format!("add --set {}=VALUE", own.name);

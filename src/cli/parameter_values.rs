@@ -10,6 +10,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches};
 
 use super::failure::Failure;
+use super::sets::Set;
 
 /// The values that flags give to parameters; each parameter has a flag in its row.
 #[derive(Debug, Clone)]
@@ -94,7 +95,9 @@ pub(super) fn units_of(matches: &ArgMatches, declared: Option<&Units>) -> Units 
         let amounts = matches.try_get_many::<Amount>(id).ok().flatten();
         let times = matches.try_get_many::<TimeOr>(id).ok().flatten();
         let times = times.into_iter().flatten().filter_map(TimeOr::time);
-        let mut all = amounts.into_iter().flatten().chain(times);
+        let sets = matches.try_get_many::<Set>(id).ok().flatten();
+        let sets = sets.into_iter().flatten().map(|set| &set.amount);
+        let mut all = amounts.into_iter().flatten().chain(times).chain(sets);
         all.any(Amount::needs_units)
     };
     match declared {
@@ -122,6 +125,18 @@ pub(super) fn parse_amount(text: &str) -> Result<Amount, String> {
     let amount = Amount::read(text)
         .ok_or("expected a number, such as -0.3 or 1e-2, or one with its unit, such as 2.5mm/s")?;
     amount.map_err(|error| on_one_line(&error))
+}
+
+/// Reads a name and the finite number behind its =, whatever its unit.
+pub(super) fn named_amount<'t>(text: &'t str, expected: &str) -> Result<(&'t str, Amount), String> {
+    let named = text.split_once('=');
+    let (name, value) = named.ok_or_else(|| format!("expected {expected}"))?;
+    let value = Amount::read(value).transpose();
+    let value = value
+        .map_err(|error| on_one_line(&error))?
+        .filter(Amount::is_finite);
+    let value = value.ok_or("the value after = must be a finite number")?;
+    Ok((name.trim(), value))
 }
 
 /// A time, or a word in its place.

@@ -126,7 +126,8 @@ impl<A: Asks> ParameterArgs<A> {
     /// The friction law of the flags, with the points of its file.
     fn law(&self) -> Result<Option<LawKind>, Failure> {
         if self.law.friction.as_deref() == Some(LawKind::FORMULA) && self.law.table.is_none() {
-            return formula_args::law(self.mu_k.as_deref(), &self.law.sets).map(Some);
+            let (mu_k, sets) = (self.mu_k.as_deref(), &self.law.sets);
+            return formula_args::law(mu_k, sets, &self.units).map(Some);
         }
         let no_number = self
             .mu_k

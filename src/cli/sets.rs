@@ -1,13 +1,16 @@
 //! The flag `--set`: values of parameters that a system or a formula names.
 
-use crate::text::{Shown, SpecError};
+use crate::setting::amount::Amount;
+use crate::setting::units::Units;
+use crate::text::SpecError;
 
 use super::failure::Failure;
+use super::parameter_values::named_amount;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct SetArgs {
-    /// The value of a parameter that --system or the formula of --friction formula names; once for
-    /// each
+    /// The value of a parameter that --system or the formula of --friction formula names, of a
+    /// formula also with its unit, as in "sigma=0.1 s/m"; once for each
     #[arg(long, value_name = "NAME=VALUE", value_parser = parse_set, allow_hyphen_values = true)]
     set: Vec<Set>,
 }
@@ -16,26 +19,27 @@ pub(super) struct SetArgs {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Set {
     pub(super) name: String,
-    pub(super) value: f64,
+    pub(super) amount: Amount,
 }
 
 fn parse_set(text: &str) -> Result<Set, String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("expected NAME=VALUE, for example zeta=0.02")?;
-    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    Ok(Set {
-        name: name.trim().to_owned(),
-        value: value.ok_or("the value after = must be a finite number")?,
-    })
+    let (name, amount) = named_amount(text, "NAME=VALUE, for example zeta=0.02")?;
+    let name = name.to_owned();
+    Ok(Set { name, amount })
 }
 
 impl Set {
     /// The failure of a value that is not taken.
     pub(super) fn refused(&self, error: SpecError) -> Failure {
-        let Self { name, value } = self;
-        let message = format!("--set {name}={}: {}", Shown(*value), error.message);
+        let Self { name, amount } = self;
+        let message = format!("--set {name}={amount}: {}", error.message);
         Failure::of_input(SpecError { message, ..error })
+    }
+
+    /// The number in `units`.
+    pub(super) fn value(&self, units: &Units) -> Result<f64, Failure> {
+        let value = self.amount.value(units);
+        value.map_err(|error| self.refused(error))
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::setting::quantity::Quantity;
 use crate::setting::system::{SystemModel, shipped};
+use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::SpecError;
 use crate::text::nearest::did_you_mean;
@@ -73,18 +74,20 @@ impl SystemArgs {
         let mut setting = Setting::of_system(Arc::clone(&model));
         let mut others = OTHERS.map(flag);
         for set in sets.each()? {
+            // Numbers with units were refused.
+            let value = set.value(&Units::default())?;
             let own = model.parameters.iter().find(|own| own.name == set.name);
             let other = OTHERS.into_iter().position(|p| p.name() == set.name);
             match (own, other) {
                 (Some(own), _) => {
-                    let value = own.check(set.value);
+                    let value = own.check(value);
                     let value = value.map_err(|why| set.refused(SpecError::whole(why)))?;
                     setting.vary(&Quantity::Own(Arc::clone(own)), value);
                 }
                 (None, Some(other)) if others[other].is_some() => {
                     return Err(given_twice(&set.name));
                 }
-                (None, Some(other)) => others[other] = Some(set.value),
+                (None, Some(other)) => others[other] = Some(value),
                 (None, None) => return Err(unknown(&set.name, &model)),
             }
         }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::chart::{self, Chart};
-use super::known::Known;
+use super::known::{Known, KnownFormula};
 use super::law::LawCurve;
 use super::motion::{self, Followed};
 use super::point::Point;
@@ -40,18 +40,21 @@ pub enum Request {
     Motion,
     /// A friction law as a curve.
     Law,
+    /// The parameters of a friction law that is a formula.
+    Formula,
     /// All parameters, laws and fields; its text is empty.
     Parameters,
 }
 
 impl Request {
     /// The requests that are answered.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Chart,
         Self::Point,
         Self::CriticalVelocity,
         Self::Motion,
         Self::Law,
+        Self::Formula,
         Self::Parameters,
     ];
 
@@ -64,6 +67,7 @@ impl Request {
             Self::CriticalVelocity => "vc",
             Self::Motion => "motion",
             Self::Law => "law",
+            Self::Formula => "formula",
             Self::Parameters => "parameters",
         }
     }
@@ -128,6 +132,8 @@ pub enum Asked {
     Motion(Box<CaseSpec>, motion::Limits),
     /// [`Request::Law`], with what is told of its points.
     Law(PointSpec, Vec<String>),
+    /// [`Request::Formula`].
+    Formula(KnownFormula),
     /// [`Request::Parameters`].
     Parameters,
 }
@@ -158,6 +164,7 @@ impl Asked {
             Request::CriticalVelocity => Self::CriticalVelocity(point(PointOf::CriticalVelocity)?),
             Request::Motion => Self::Motion(Box::new(text.parse()?), limits.motion),
             Request::Law => Self::Law(point(PointOf::Law)?, remarks.clone()),
+            Request::Formula => Self::Formula(KnownFormula::read(text)?),
             Request::Parameters => Self::Parameters,
         })
     }
@@ -170,7 +177,7 @@ impl Asked {
             Self::Chart(plan) => chart::bytes(plan),
             Self::CriticalVelocity(point) => memory::of_critical_velocity(&point.setting),
             Self::Motion(case, limits) => memory::of_motion(&case.setting) + limits.bytes(),
-            Self::Point(_) | Self::Law(..) | Self::Parameters => 0,
+            Self::Point(_) | Self::Law(..) | Self::Formula(_) | Self::Parameters => 0,
         }
     }
 
@@ -180,7 +187,7 @@ impl Asked {
         match self {
             Self::Chart(plan) => chart::is_slow(plan),
             Self::CriticalVelocity(_) | Self::Motion(..) => true,
-            Self::Point(_) | Self::Law(..) | Self::Parameters => false,
+            Self::Point(_) | Self::Law(..) | Self::Formula(_) | Self::Parameters => false,
         }
     }
 
@@ -235,6 +242,7 @@ impl Asked {
                 remarks: remarks.clone(),
                 ..LawCurve::of(point)?
             }),
+            Self::Formula(formula) => json(formula),
             Self::Parameters => json(&Known::all()),
         }
     }

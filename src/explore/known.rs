@@ -2,10 +2,14 @@
 
 use serde::Serialize;
 
+use crate::setting::formula::{EXAMPLE, GivenFormula};
+use crate::setting::formula_keys::formula_of;
 use crate::setting::law_kind::{LawKind, NamedLaw};
-use crate::setting::parameter::{Folded, Page};
+use crate::setting::parameter::{Folded, Group, Page};
+use crate::setting::system::parameter::OwnParameter;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
+use crate::text::SpecError;
 
 /// All tables.
 #[derive(Debug, Clone, Serialize)]
@@ -26,11 +30,11 @@ pub struct Known {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownParameter {
     /// The word for it in texts.
-    pub name: &'static str,
+    pub name: String,
     /// Its symbol.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// What it is.
-    pub long_name: &'static str,
+    pub long_name: String,
     /// Its unit where no units are given: "1".
     pub unit: String,
     /// Powers of force, length and time in its unit.
@@ -41,7 +45,7 @@ pub struct KnownParameter {
     /// The smallest and the largest value.
     pub range: [f64; 2],
     /// The same in words.
-    pub allowed: &'static str,
+    pub allowed: String,
     /// What it belongs to: `model`, `sliding`, `pull`, `law`, `start` or `limit`.
     pub group: &'static str,
     /// The flag that gives it on the command line, if there is one.
@@ -74,7 +78,7 @@ pub struct KnownPage {
 pub struct KnownLaw {
     /// The word for it in texts.
     pub name: &'static str,
-    /// Its formula; none for a table.
+    /// Its formula, of the law `formula` an example; none for a table.
     #[cfg_attr(feature = "serve", schema(required))]
     pub formula: Option<&'static str>,
     /// The parameters that describe it, besides μ_S.
@@ -85,6 +89,16 @@ pub struct KnownLaw {
     pub optional: Vec<&'static str>,
     /// Whether motions are followed under it.
     pub motions: bool,
+}
+
+/// The parameters of a friction law that is a formula.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct KnownFormula {
+    /// Those that other laws have too, besides μ_S.
+    pub known: Vec<&'static str>,
+    /// Its own.
+    pub own: Vec<KnownParameter>,
 }
 
 /// A field of a map.
@@ -113,7 +127,7 @@ pub struct KnownField {
 }
 
 impl Known {
-    /// Everything. A law that is a formula has no parameters before it is written.
+    /// Everything. The law `formula` has the parameters of its example.
     #[must_use]
     pub fn all() -> Self {
         let formulas = NamedLaw::all().iter().map(KnownLaw::of);
@@ -128,7 +142,7 @@ impl Known {
         Self {
             version: crate::VERSION,
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
-            laws: formulas.chain([table]).collect(),
+            laws: formulas.chain([table, KnownLaw::of_example()]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
         }
     }
@@ -137,18 +151,57 @@ impl Known {
 impl KnownParameter {
     fn of(parameter: Parameter) -> Self {
         Self {
-            name: parameter.name(),
-            symbol: parameter.symbol(),
-            long_name: parameter.long_name(),
+            name: parameter.name().into(),
+            symbol: parameter.symbol().into(),
+            long_name: parameter.long_name().into(),
             unit: Units::default().of_parameter(parameter),
             dimension: parameter.dimension(),
             default: parameter.default_value(),
             range: parameter.range(),
-            allowed: parameter.allowed(),
+            allowed: parameter.allowed().into(),
             group: parameter.group().name(),
             flag: parameter.long_flag().map(|flag| format!("--{flag}")),
             page: parameter.page().map(KnownPage::of),
         }
+    }
+
+    /// A parameter that only one formula has. Nothing is known of its size.
+    fn own(own: &OwnParameter) -> Self {
+        Self {
+            name: own.name.clone(),
+            symbol: own.name.clone(),
+            long_name: own.long_name.clone(),
+            unit: own.unit.clone(),
+            dimension: own.dimension,
+            default: None,
+            range: [own.minimum, own.maximum],
+            allowed: own.allowed(),
+            group: Group::Law.name(),
+            flag: None,
+            page: Some(KnownPage {
+                first: Some(1.0),
+                slider: [0.0, 2.0],
+                axis: [0.0, 2.0],
+                folded: None,
+            }),
+        }
+    }
+}
+
+impl KnownFormula {
+    /// The parameters of the formula in `[friction]` of a text.
+    ///
+    /// # Errors
+    /// Where there is none, and where it is not understood.
+    pub fn read(text: &str) -> Result<Self, SpecError> {
+        let formula = formula_of(text)?;
+        Ok(Self {
+            known: formula.known().iter().map(|p| p.name()).collect(),
+            own: formula
+                .own()
+                .map(|(own, _)| KnownParameter::own(own))
+                .collect(),
+        })
     }
 }
 
@@ -182,6 +235,21 @@ impl KnownLaw {
             motions: !law.has_state(),
         }
     }
+
+    /// The law of an expression, with that of the example.
+    fn of_example() -> Self {
+        let example = GivenFormula::read(EXAMPLE);
+        let parameters = example.iter().flat_map(GivenFormula::known);
+        let parameters: Vec<_> = parameters.map(|p| p.name()).collect();
+        Self {
+            name: LawKind::FORMULA,
+            formula: Some(EXAMPLE),
+            needed: parameters.len(),
+            parameters,
+            optional: Vec::new(),
+            motions: true,
+        }
+    }
 }
 
 impl KnownField {
@@ -213,6 +281,24 @@ mod tests {
             assert!(parameter.check(from - from.abs() * 1e-12 - 1e-13).is_err());
             assert!(parameter.check(to + to.abs() * 1e-12 + 1e-13).is_err());
         }
+    }
+
+    #[test]
+    fn a_formula_tells_its_parameters() {
+        let text = |mu_k: &str| format!("[friction]\nlaw = \"formula\"\nmu_k = \"{mu_k}\"\n");
+        let found = KnownFormula::read(&text("mu0 + sigma*v^p + mu_s*0")).unwrap();
+        assert_eq!(found.known, ["mu0"]);
+        let own: Vec<&str> = found.own.iter().map(|of| &*of.name).collect();
+        assert_eq!(own, ["sigma", "p"]);
+        let wrong = text("mu0 + exq(v)");
+        let place = KnownFormula::read(&wrong).unwrap_err().span.unwrap();
+        assert!(wrong[place].contains("exq"));
+        assert!(KnownFormula::read("[friction]\nlaw = \"coulomb\"\n").is_err());
+        let law = Known::all().laws.pop().unwrap();
+        assert_eq!(
+            (law.name, &law.parameters[..]),
+            ("formula", &["mu0", "v_s"][..])
+        );
     }
 
     /// The page sets as many parameters of a law as that needs. It begins within their ranges.

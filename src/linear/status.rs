@@ -12,18 +12,21 @@ pub const DISAGREE: u8 = 8;
 pub const SATURATED: u8 = 16;
 /// The cell was recomputed by a second method, as a sample.
 pub const SAMPLED: u8 = 32;
+/// The setting of the cell is outside the model's range: it has no values.
+pub const OUTSIDE_MODEL: u8 = 64;
 
 /// Something is amiss with a cell that has one of these.
-pub const AMISS: u8 = MARGINAL | NOT_CONVERGED | DISAGREE | SATURATED;
+pub const AMISS: u8 = MARGINAL | NOT_CONVERGED | DISAGREE | SATURATED | OUTSIDE_MODEL;
 
 /// Every bit with its name as it stands in the map, in the order of the bits.
-pub const FLAGS: [(u8, &str); 6] = [
+pub const FLAGS: [(u8, &str); 7] = [
     (CERTIFIED, "certified"),
     (MARGINAL, "marginal"),
     (NOT_CONVERGED, "not_converged"),
     (DISAGREE, "disagree"),
     (SATURATED, "saturated"),
     (SAMPLED, "sampled"),
+    (OUTSIDE_MODEL, "outside_model"),
 ];
 
 /// The largest count of unstable roots that a map holds; 65535 is the fill value of cells not

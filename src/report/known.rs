@@ -1,6 +1,6 @@
 //! The cells of a picture: each has a value, or a reason why it shows none.
 
-use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED, OUTSIDE_MODEL};
 use crate::setting::Field;
 use crate::setting::field::OUTCOMES;
 use crate::setting::regime_at_v0::RegimeAtV0;
@@ -10,8 +10,7 @@ use crate::store::map_file::Plane;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::engine::STATUS_FILL;
 
-/// Why a cell shows no value. With the first four its value is not known, whatever number the map
-/// has.
+/// Why a cell shows no value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Gap {
     /// Its computation did not converge.
@@ -26,6 +25,8 @@ pub(super) enum Gap {
     LiftsOff,
     /// Stick-slip persists at the largest velocity that was tried.
     Persists,
+    /// The setting is outside the model's range.
+    OutsideModel,
     /// The field has no value there.
     NoValue,
     /// The cell is not computed yet.
@@ -35,18 +36,19 @@ pub(super) enum Gap {
 impl Gap {
     /// Every gap, in the order of legends.
     #[cfg(feature = "picture")]
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::NotConverged,
         Self::Disagree,
         Self::Marginal,
         Self::Undecided,
         Self::LiftsOff,
         Self::Persists,
+        Self::OutsideModel,
         Self::NoValue,
         Self::NotComputed,
     ];
 
-    /// Whether an answer exists but is not known.
+    /// Whether an answer exists but is not known, whatever number the map has.
     pub(super) const fn is_unknown(self) -> bool {
         matches!(
             self,
@@ -64,6 +66,7 @@ impl Gap {
             Self::Undecided => "undecided",
             Self::LiftsOff => "no value: lifts off",
             Self::Persists => "no value: persists",
+            Self::OutsideModel => "no value: outside the model",
             Self::NoValue => match field {
                 Field::VLiftoff => "no lift-off",
                 Field::VSmooth => "not smooth at v_max",
@@ -168,6 +171,9 @@ fn gap(field: Field, value: f64, status: u8, with_roots: bool) -> Option<Gap> {
     if status == STATUS_FILL {
         return Some(Gap::NotComputed);
     }
+    if status & OUTSIDE_MODEL != 0 && value.is_nan() {
+        return Some(Gap::OutsideModel);
+    }
     let undecided = match field {
         Field::Outcome => value == f64::from(Outcome::Undecided as u8),
         Field::Regime => value == f64::from(RegimeAtV0::Undecided as u8),
@@ -254,6 +260,8 @@ mod tests {
         assert_eq!(of(Field::Abscissa, -1.0, CERTIFIED | NOT_CONVERGED), None);
         assert_eq!(of(Field::Abscissa, -1.0, DISAGREE), Some(Gap::Disagree));
         assert_eq!(of(Field::Vc, f64::NAN, 0), Some(Gap::NoValue));
+        let outside = of(Field::Vc, f64::NAN, OUTSIDE_MODEL);
+        assert_eq!(outside, Some(Gap::OutsideModel));
         assert_eq!(of(Field::Vc, 0.0, STATUS_FILL), Some(Gap::NotComputed));
     }
 

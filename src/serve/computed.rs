@@ -12,7 +12,7 @@ use super::problem::{Denied, Problem, Refused};
 use super::served::Served;
 use super::work::Pace;
 use crate::explore::answer::WithCommand;
-use crate::explore::known::Known;
+use crate::explore::known::{Known, KnownFormula};
 use crate::explore::law::LawCurve;
 use crate::explore::point::BlockPoint;
 use crate::explore::vc::CriticalVelocity;
@@ -26,6 +26,7 @@ pub(super) fn routes() -> OpenApiRouter<Served> {
         .routes(routes!(vc))
         .routes(routes!(motion))
         .routes(routes!(law))
+        .routes(routes!(formula))
         .routes(routes!(parameters))
 }
 
@@ -41,6 +42,7 @@ mod examples {
         alpha_v = -0.33\ntau = 4.15\n\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n\
         v_s = 0.5\n\n[start]\nx_dot0 = 0.3535\n";
     pub(super) const LAW: &str = "[friction]\nlaw = \"stribeck\"\nmu0 = 0.4\nv_s = 0.5\n";
+    pub(super) const FORMULA: &str = "[friction]\nlaw = \"formula\"\nmu_k = \"mu0 + sigma*v\"\n";
 }
 
 /// The text of a request.
@@ -212,6 +214,32 @@ async fn law(
     body: Bytes,
 ) -> Result<Response, Problem> {
     answer(served, explore::Request::Law, text(&headers, &body)).await
+}
+
+/// The parameters of a friction law that is a formula
+///
+/// The text has the law and its expression in the table `[friction]`; nothing else is read.
+#[utoipa::path(
+    post,
+    path = "/api/v1/formula",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::FORMULA),
+    ),
+    responses(
+        (status = 200, description = "Its parameters", body = KnownFormula),
+        Denied,
+        Refused,
+    ),
+)]
+async fn formula(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    answer(served, explore::Request::Formula, text(&headers, &body)).await
 }
 
 /// All parameters, friction laws and fields

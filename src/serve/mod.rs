@@ -1,7 +1,7 @@
 //! slipmap as a service on the user's own machine: a page, and the interface that it uses.
 //!
 //! ```text
-//! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law → explore
+//! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law, formula → explore
 //!                                  → /api/v1/maps → maps → processes that read files
 //! ```
 //!

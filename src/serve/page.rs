@@ -25,6 +25,7 @@ const FILES: &[(&str, &str)] = &files![
     "dom.js",
     "explorer.css",
     "explorer.js",
+    "formula.js",
     "frame.js",
     "legend.js",
     "list.js",

@@ -51,11 +51,15 @@ impl Amount {
         self.number.parse().is_ok_and(f64::is_finite)
     }
 
+    /// The powers of force, length and time of its unit; 0 without one.
+    pub(crate) fn dimension(&self) -> [i32; 3] {
+        let unit = self.unit.as_ref();
+        unit.map_or([0; 3], |unit| unit.dimension())
+    }
+
     /// Whether the number depends on the system of units: it has a unit other than % and the like.
     pub(crate) fn needs_units(&self) -> bool {
-        self.unit
-            .as_ref()
-            .is_some_and(|unit| unit.dimension() != [0; 3])
+        self.dimension() != [0; 3]
     }
 
     /// Checks that the unit, if there is one, has these powers of force, length and time.

@@ -19,6 +19,8 @@ use crate::text::nearest::did_you_mean;
 
 /// The name of the speed.
 const SPEED: &str = "v";
+/// A formula as an example.
+pub(crate) const EXAMPLE: &str = "mu0 + (mu_s - mu0)*exp(-v/v_s)";
 /// The most parameters of a formula.
 const MOST: usize = 32;
 
@@ -166,12 +168,12 @@ impl GivenFormula {
 
     /// Its parameters that other laws have too, besides μ_S.
     #[must_use]
-    pub(super) fn known(&self) -> &[Parameter] {
+    pub(crate) fn known(&self) -> &[Parameter] {
         &self.model.known
     }
 
     /// Its own parameters with their values.
-    pub(super) fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
+    pub(crate) fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
         self.model.own.iter().zip(self.values.iter().copied())
     }
 
@@ -198,7 +200,7 @@ impl GivenFormula {
     }
 
     /// Gives an own parameter a dimension in these units.
-    pub(super) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
+    pub(crate) fn measure(&mut self, own: &OwnParameter, dimension: [i32; 3], units: &Units) {
         let model = Arc::make_mut(&mut self.model);
         model.own[own.index] = Arc::new(own.measured(units.of(dimension), dimension));
     }

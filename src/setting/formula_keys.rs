@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::expression::Written;
-use super::formula::GivenFormula;
+use super::formula::{EXAMPLE, GivenFormula};
 use super::law_kind::LawKind;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
@@ -14,7 +14,7 @@ use super::units::Units;
 use super::values::Setting;
 use crate::model::table::TableColumn;
 use crate::text::document::Document;
-use crate::text::toml_reader::{Entry, SpecError};
+use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// The key of the units of own parameters.
 pub(super) const UNITS: &str = "units";
@@ -136,7 +136,9 @@ impl FormulaKeys {
             Some((formula, _)) => Ok(LawKind::Formula(formula.clone())),
             None => Err(entry
                 .error("mu_k is not given: the formula law is an expression in v")
-                .help("mu_k = \"mu0 + (mu_s - mu0)*exp(-v/v_s)\", and a key for each name in it")),
+                .help(format!(
+                    "mu_k = \"{EXAMPLE}\", and a key for each name in it"
+                ))),
         }
     }
 
@@ -167,6 +169,24 @@ impl FormulaKeys {
         let known = Parameter::ALL.map(Parameter::name).into_iter();
         axis.unknown(&known.chain(own).collect::<Vec<_>>())
     }
+}
+
+/// The formula in `[friction]` of a text, without values. Nothing else of the text is read.
+///
+/// # Errors
+/// Where there is none, and where it is not understood.
+pub(crate) fn formula_of(text: &str) -> Result<GivenFormula, SpecError> {
+    let parsed = parse(text)?;
+    let entries = entries(parsed.get_ref(), "");
+    let document = Document::of(entries, ["friction"]);
+    let FormulaKeys {
+        formula, misread, ..
+    } = FormulaKeys::ahead(&document, text, &Units::default());
+    if let Some(misread) = misread {
+        return Err(misread);
+    }
+    let none = || SpecError::whole("there is no formula").help("[friction] law = \"formula\"");
+    formula.map(|(formula, _)| formula).ok_or_else(none)
 }
 
 /// The formula of `[friction]`, with the place of its expression; none of another law.

@@ -60,7 +60,7 @@ pub(crate) mod command;
 mod expression;
 pub mod field;
 pub mod formula;
-mod formula_keys;
+pub(crate) mod formula_keys;
 mod friction_table;
 mod given;
 mod given_error;

@@ -69,15 +69,15 @@ pub(crate) fn setting_text(
     text.trim_start().to_owned()
 }
 
-/// The key of the units of own parameters, where some have units.
+/// The units of own parameters, as a key of `[friction]`; empty where none has a unit.
 fn own_units(setting: &Setting) -> String {
-    let measured = setting.own().filter(|(own, _)| own.unit != "1");
-    let pairs: Vec<String> = measured
+    let measured = setting.own().filter(|(own, _)| own.dimension != [0; 3]);
+    let units: Vec<String> = measured
         .map(|(own, _)| format!("{} = {}", own.name, quoted(&own.unit)))
         .collect();
-    match pairs.is_empty() {
+    match units.is_empty() {
         true => String::new(),
-        false => format!("{UNITS} = {{ {} }}\n", pairs.join(", ")),
+        false => format!("{UNITS} = {{ {} }}\n", units.join(", ")),
     }
 }
 

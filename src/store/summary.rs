@@ -206,6 +206,14 @@ fn range<T: Number + Into<f64>>(on: &Dataset, name: &str) -> Option<(f64, f64)> 
     }
 }
 
+/// The cells with each flag, as a map tells them. Older maps lack the last flags.
+fn flagged(mut told: Vec<u64>) -> Option<[u64; FLAGS.len()]> {
+    if told.len() < FLAGS.len() {
+        told.resize(FLAGS.len(), 0);
+    }
+    told.try_into().ok()
+}
+
 /// Counts of the statuses of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StatusCounts {
@@ -259,7 +267,7 @@ impl StatusCounts {
         Some(Self {
             computed: cells.checked_sub(one_number(on, WITHOUT_VALUE)?)?,
             unflagged: one_number(on, UNFLAGGED)?,
-            flagged: several(on, FLAG_CELLS)?.try_into().ok()?,
+            flagged: flagged(several(on, FLAG_CELLS)?)?,
         })
     }
 }

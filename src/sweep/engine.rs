@@ -242,8 +242,8 @@ fn pool<E>(builder: ThreadPoolBuilder, threads: usize) -> Result<ThreadPool, Run
     })
 }
 
-/// A computed piece, or the error of the model.
-type Sent<E> = Result<(Piece, E), ModelError>;
+/// A computed piece, encoded.
+type Sent<E> = (Piece, E);
 /// The channel on which pieces for a sink arrive.
 type Arrivals<S> = Receiver<Sent<<<S as Sink>::Encoder as Encode>::Encoded>>;
 
@@ -304,23 +304,23 @@ fn next<C: Encode>(
             if stop.is_set() {
                 return None;
             }
-            traced.map(|plane| encoder.encode(piece, Computed::Curves(&plane)))
+            encoder.encode(piece, Computed::Curves(&traced))
         }
         Piece::Best(n) => {
             let found = best_of_plane(plan, &best_plane(plan, n), stop);
             if stop.is_set() {
                 return None;
             }
-            Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
+            encoder.encode(piece, Computed::Best(found.as_ref()))
         }
         Piece::Tile(n) => {
             if !worker.compute(&plan.tiles.tile(n as usize), stop) {
                 return None;
             }
-            Ok(encoder.encode(piece, Computed::Tile(&worker.buffers)))
+            encoder.encode(piece, Computed::Tile(&worker.buffers))
         }
     };
-    Some(encoded.map(|encoded| (piece, encoded)))
+    Some((piece, encoded))
 }
 
 /// Computes pieces on this thread; returns how many.
@@ -343,11 +343,10 @@ fn here<S: Sink>(
 /// Hands a piece to the sink.
 fn take<S: Sink>(
     plan: &Plan,
-    sent: Sent<<S::Encoder as Encode>::Encoded>,
+    (piece, encoded): Sent<<S::Encoder as Encode>::Encoded>,
     sink: &mut S,
     observer: &dyn Observer,
 ) -> Result<(), RunError<S::Error>> {
-    let (piece, encoded) = sent?;
     sink.write(piece, encoded).map_err(RunError::Sink)?;
     observer.event(&Event::PieceDone {
         cells: plan.cells_of(piece),

@@ -8,14 +8,17 @@ import {
   atRest,
   chance,
   colourAt,
+  eventually,
   newFolder,
   openPage,
   opened,
+  picture,
   placeOf,
   serve,
   settled,
   show,
   slipmap,
+  violations,
 } from "./support.mjs";
 
 const { browser, server } = await opened();
@@ -395,6 +398,82 @@ test("a measured law is pasted as CSV, and a mistake in it is told", async () =>
   assert.match(page.url(), /table=/);
   await page.locator("#law-table").fill("0, 0.5\nx\n");
   await page.waitForFunction(() => /1 point/.test(document.getElementById("problem").innerText));
+});
+
+const FORMULA = "mu0 + (mu_s - mu0)*exp(-(v/v_s)^p) + sigma*v";
+
+test("a law is written as a formula, whose own parameters are sliders and axes", async () => {
+  const page = await openPage(browser, server.link);
+  await page.locator("#law").selectOption("formula");
+  const formula = page.locator("#law-formula");
+  assert.equal(await formula.inputValue(), "mu0 + (mu_s - mu0)*exp(-v/v_s)");
+  await formula.fill(FORMULA);
+  await page.locator("#n-p").fill("1.5");
+  await page.locator("#n-sigma").fill("0.03");
+  await settled(page);
+  const flags = (sigma, more = []) => [
+    "--friction=formula",
+    `--mu-k=${FORMULA}`,
+    "--mu0=0.5",
+    "--v-s=0.5",
+    "--v0=0.35",
+    "--set=p=1.5",
+    `--set=sigma=${sigma}`,
+    ...more,
+  ];
+  const { mu_prime: slope } = asked(["point", ...flags(0.03)]);
+  const digits = String(Number(Math.abs(slope).toPrecision(6)));
+  await eventually(async () => assert.ok((await words(page, "law-told")).includes(digits)));
+  assert.ok(await page.locator("#p-sigma").isVisible());
+  // What was set comes back from the address.
+  const { hash } = new URL(page.url());
+  assert.match(hash, /own\.p=1\.5.*own\.sigma=0\.03.*formula=mu0/);
+  const before = await words(page, "point");
+  await show(page, "#v=1");
+  await show(page, hash);
+  await eventually(async () => assert.equal(await words(page, "point"), before));
+  assert.equal(await page.locator("#n-p").inputValue(), "1.5");
+  // A mistake is marked beside the field, in the words of slipmap; sliders stay meanwhile.
+  await formula.fill(FORMULA.replace("exp", "exq"));
+  await eventually(async () => {
+    assert.equal(await page.locator("#formula-mistake u").innerText(), "exq");
+    assert.match(await words(page, "formula-mistake"), /did you mean `exp`/);
+  });
+  assert.equal(await formula.getAttribute("aria-invalid"), "true");
+  assert.ok(await page.locator("#p-sigma").isVisible());
+  await picture(page, "formula-mistake");
+  await formula.fill(FORMULA);
+  await eventually(async () => assert.equal(await words(page, "formula-mistake"), ""));
+  // From sigma = −1.76 on friction at v0 has a coefficient.
+  await page.locator("#axis-x").selectOption("sigma");
+  await page.locator("#axis-x-from").fill("-3");
+  await page.locator("#axis-x-from").press("Enter");
+  await settled(page);
+  await picture(page, "formula");
+  const cells = await page.evaluate(() => {
+    const { plane } = window.slipmap.plane;
+    const [sigmas, taus] = plane.axes.map(({ values }) => values);
+    return [0.1, 0.5, 0.9].flatMap((x) =>
+      [0.2, 0.8].map((y) => {
+        const [i, j] = [Math.floor(x * plane.nx), Math.floor(y * plane.ny)];
+        const n = i * plane.ny + j;
+        const [count, flags] = [plane.others.n_unstable[n], plane.flags(n)];
+        return { sigma: sigmas[i], tau: taus[j], count, flags };
+      }),
+    );
+  });
+  const outside = ({ flags: of }) => of.includes("outside the model's range");
+  for (const { sigma, tau, count, flags: of } of cells) {
+    if (sigma < -1.8) {
+      assert.ok(outside({ flags: of }) && count === 65535, `${sigma} ${tau}`);
+    } else {
+      const more = ["--alpha-v=-0.33", `--tau=${tau}`];
+      assert.equal(asked(["point", ...flags(sigma, more)]).n_unstable, count, `${sigma} ${tau}`);
+    }
+  }
+  assert.equal(cells.filter(outside).length, 2);
+  assert.deepEqual(await violations(page), []);
+  assert.deepEqual(page.faults.filter((fault) => !/422/.test(fault)), []);
 });
 
 test("units label axes and numbers", async () => {

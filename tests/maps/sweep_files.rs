@@ -481,9 +481,9 @@ const BAD: &[(&str, &str, &str)] = &[
         "viscous",
     ),
     (
-        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\ndamping = \"0.1 kg/s\"\n",
-        "\"0.1 kg/s\"",
-        "fixed.damping: expected a number",
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\ndamping = \"0.1 kg\"\n",
+        "\"0.1 kg\"",
+        "fixed.damping",
     ),
     (
         "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nviscous = { value = 1, unit = \"N\" }\n",

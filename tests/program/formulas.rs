@@ -135,7 +135,7 @@ fn own_parameters_are_axes_of_maps() {
 #[test]
 fn mistakes_in_formulas_are_told_in_their_place() {
     let ok = "sigma = 0.1\ndelta = 1.5\n";
-    let with = |law: &str| format!("[axes]\ntau = [1]\nv0 = [0.1, 2]\n[friction]\n{law}");
+    let with = |law: &str| format!("[axes]\ntau = [1]\nv0 = [1, 2]\n[friction]\n{law}");
     for (law, says) in [
         (format!("{LAW}{ok}sgima = 1\n"), "did you mean `sigma`?"),
         (
@@ -156,8 +156,8 @@ fn mistakes_in_formulas_are_told_in_their_place() {
             "min and max have kinks",
         ),
         (
-            format!("{LAW}{ok}").replace("0.1", "-0.2"),
-            "at the speed 2 is outside its range",
+            format!("{LAW}{ok}").replace("0.1", "-0.4"),
+            "at the speed 1 is outside its range",
         ),
         (
             format!("{LAW}{ok}").replace("sigma*v", "sigma*ln(v)"),
@@ -203,6 +203,86 @@ fn formulas_in_flags_are_completed_and_told_in_one_line() {
     let told = out(&broken);
     let first = told.lines().next().unwrap();
     assert!(first.contains("mu_k = 0.3 + 0.1*v; free period"), "{told}");
+}
+
+/// A map of 8 cells, whose first axis is `own`, of the formula `mu_k`.
+fn own_map(own: &str, mu_k: &str) -> String {
+    format!(
+        "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = false\n[axes]\n{own}\n\
+         tau = [0.2, 1]\n[fixed]\nv0 = 0.5\nalpha_n = -2\n[friction]\nlaw = \"formula\"\n\
+         mu_k = \"{mu_k}\"\n"
+    )
+}
+
+/// Where μ_K is at most 0 at v0, above μ_S at rest, or no number, a cell of a map says that it has
+/// no value, and a point says why.
+#[test]
+fn cells_without_a_coefficient_say_so() {
+    for (own, mu_k, with, why) in [
+        (
+            "sigma = [-1, -0.7, -0.5, 0.2]",
+            "0.3 + sigma*v",
+            &[-0.5, 0.2][..],
+            "at the speed 0.5",
+        ),
+        (
+            "rest = [0.4, 0.9, 1.1, 2]",
+            "0.2 + (rest - 0.2)*exp(-v/0.3)",
+            &[0.4, 0.9],
+            "at most mu_s",
+        ),
+        (
+            "u = [-1, 0.3, 0.6, 2]",
+            "0.5 + 0.1*ln(u - v)",
+            &[0.6, 2.0],
+            "at the speed",
+        ),
+    ] {
+        let folder = Folder::with(&[("map.toml", &own_map(own, mu_k))]);
+        expect(&folder.run(&["run", "map.toml", "-q"]), 0, "map.h5");
+        let verified = folder.run(&["verify", "map.h5", "--cells", "8"]);
+        expect(&verified, 0, "0 differ");
+        let info = out(&folder.run(&["info", "map.h5"]));
+        assert!(info.contains("outside_model  4 cells"), "{info}");
+        let csv = out(&folder.run(&["export", "map.h5"]));
+        assert_eq!(csv.lines().count(), 1 + 8);
+        for row in csv.lines().skip(1) {
+            let row: Vec<&str> = row.split(',').collect();
+            let name = own.split(' ').next().unwrap();
+            let at = [format!("{name}={}", row[0]), format!("tau={}", row[1])];
+            let asked = ["--map", "map.h5", "--at", &at[0], "--at", &at[1]];
+            if with.contains(&row[0].parse().unwrap()) {
+                let certified = slipmap::linear::status::CERTIFIED.to_string();
+                assert_eq!(row.last(), Some(&&*certified), "{row:?}");
+                assert!(!row[2].is_empty() && !row[3].is_empty(), "{row:?}");
+            } else {
+                assert_eq!(row[2..], ["", "", "", "64"]);
+                let told = folder.run(&[&["point"], &asked[..]].concat());
+                expect(&told, 2, "outside its range");
+                assert!(err(&told).contains(why), "{}", err(&told));
+            }
+        }
+    }
+}
+
+/// Without v0 the critical velocity has no value there, and a sweep without any coefficient is
+/// refused.
+#[test]
+fn critical_velocities_without_a_coefficient_say_so() {
+    let text = "fields = [\"vc\", \"outcome\"]\n[axes]\nrest = [0.5, 1.1]\n[fixed]\n\
+        alpha_n = -8\ntau = 0.3\n[friction]\nlaw = \"formula\"\nmu_k = \"rest - 0.2*v\"\n";
+    let folder = Folder::with(&[
+        ("map.toml", text),
+        ("none.toml", &text.replace("0.5, ", "1.2, ")),
+    ]);
+    expect(&folder.run(&["run", "map.toml", "-q"]), 0, "");
+    let csv = out(&folder.run(&["export", "map.h5"]));
+    let rows: Vec<&str> = csv.lines().skip(1).collect();
+    assert!(!rows[0].ends_with(",64"), "{csv}");
+    assert_eq!(rows[1], "1.1,,,64");
+    let refused = folder.run(&["run", "none.toml"]);
+    expect(&refused, 2, "is outside its range: at most mu_s = 1");
+    expect(&refused, 2, "at rest = 1.2");
 }
 
 /// The critical velocity by some flags of the formula law.
@@ -336,4 +416,40 @@ fn margins_of_v0_end_where_steep_laws_become_unstable() {
             "{exponent} {more:?}"
         );
     }
+}
+
+/// A parameter with a unit is one in the declared units, or the SI; a saved setting keeps it.
+#[test]
+fn own_parameters_have_units_in_flags() {
+    let folder = Folder::new();
+    let law = ["--friction", "formula", "--mu-k=mu0-sigma*v", "--mu0=0.3"];
+    let told = |more: &[&str]| out(&folder.run(&[&["point"], &law[..], more].concat()));
+    let si = told(&["--set", "sigma=0.1 s/m", "--v0=500mm/s"]);
+    assert!(si.contains("sigma = 0.1 m-1 s;"), "{si}");
+    assert!(si.contains("mu_prime         -0.1 m-1 s"), "{si}");
+    let slow = told(&["--set=sigma=100s/km", "--units=N,mm,s", "--v0=500"]);
+    assert!(slow.contains("sigma = 0.0001 mm-1 s;"), "{slow}");
+    assert!(slow.contains("mu_k             0.25\n"), "{slow}");
+    let save = "best --v0=1m/s --control=load --save=saved.toml --set=sigma=0.1s/m";
+    let save: Vec<&str> = save.split(' ').chain(law).collect();
+    expect(&folder.run(&save), 0, "saved.toml");
+    let saved = out(&folder.run(&["point", "--setting", "saved.toml"]));
+    assert!(saved.contains("sigma = 0.1 m-1 s;"), "{saved}");
+    for (more, says) in [
+        (&["--set=sigma=0.1s/q"][..], "no unit \"q\" is known"),
+        (
+            &["--set=sigma=0.1s/m", "--units=dimensionless"],
+            "--set sigma=0.1 s/m: a number has a unit",
+        ),
+        (
+            &["--set=sigma=1e11km"],
+            "sigma = 100000000000000 is outside",
+        ),
+        (&["--set=sigma=s/m"], "must be a finite number"),
+    ] {
+        let refused = folder.run(&[&["point", "--v0=0.5"], &law[..], more].concat());
+        expect(&refused, 2, says);
+    }
+    let system = ["point", "--system=turning", "--tau=1", "--set=zeta=1s"];
+    expect(&folder.run(&system), 2, "a number has a unit");
 }

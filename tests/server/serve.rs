@@ -181,8 +181,17 @@ fn laws_and_tables_are_told() {
         "hyperbolic",
         "rate-and-state",
         "table",
+        "formula",
     ];
     assert_eq!(names("laws"), laws);
+    let formula = "[friction]\nlaw = \"formula\"\nmu_k = \"mu0 + sigma*v\"\n";
+    let found = serving.ask("formula", formula).json();
+    assert_eq!(found["known"], serde_json::json!(["mu0"]));
+    assert_eq!(found["own"][0]["name"], "sigma");
+    let refused = serving.ask("formula", &formula.replace("sigma", "mass"));
+    let place = serde_json::json!(formula.find("sigma"));
+    assert_eq!(refused.status, 422);
+    assert_eq!(refused.json()["span"][0], place);
     assert!(names("fields").contains(&"n_unstable".to_owned()));
 }
 

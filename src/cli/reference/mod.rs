@@ -209,6 +209,10 @@ fn meaning_of_flag(name: &str) -> &'static str {
         "disagree" => "two methods differ about the cell",
         "saturated" => "the count is larger than the map can hold",
         "sampled" => "the cell was recomputed by a second method",
+        "outside_model" => {
+            "the setting is outside the model's range, as where a formula gives no coefficient of \
+             friction above 0: the cell has no values, and `slipmap point --map` says why"
+        }
         _ => "",
     }
 }

@@ -17,6 +17,8 @@ pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Cells without a value, below the hatching.
 pub(super) const NO_VALUE: Rgb = Rgb(0xd9, 0xd9, 0xd9);
+/// Cells outside the model's range, below the hatching.
+pub(super) const OUTSIDE_MODEL: Rgb = Rgb(0xbc, 0xbc, 0xbc);
 /// Cells whose value is not known, below the hatching.
 pub(super) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
 /// The lines of the hatching.

@@ -26,6 +26,7 @@ fn runs(gap: Gap) -> &'static [Run] {
         Gap::Disagree => &[Run::Rising, Run::Falling],
         Gap::Undecided => &[Run::Upright],
         Gap::NoValue => &[Run::Level],
+        Gap::OutsideModel => &[Run::Level, Run::Rising],
         Gap::NotComputed => &[Run::Upright, Run::Level],
         Gap::LiftsOff | Gap::Persists => &[],
     }
@@ -37,6 +38,7 @@ pub(super) fn ground(gap: Gap) -> Rgb {
         Gap::LiftsOff => colour::LIFTS_OFF,
         Gap::Persists => colour::PERSISTS,
         Gap::NoValue => colour::NO_VALUE,
+        Gap::OutsideModel => colour::OUTSIDE_MODEL,
         Gap::NotComputed => colour::PAPER,
         Gap::NotConverged | Gap::Disagree | Gap::Marginal | Gap::Undecided => colour::UNKNOWN,
     }

@@ -60,10 +60,7 @@ impl Curves {
             ..Self::default()
         };
         for panel in &view.panels {
-            let Ok(traced) = trace_spanned(plan, plane, panel, &Stop::default()) else {
-                curves.missing = Some("a parameter leaves the range of the model");
-                continue;
-            };
+            let traced = trace_spanned(plan, plane, panel, &Stop::default());
             let rows = CurveRows::of(&traced);
             if rows.left_out {
                 curves.missing = Some("there are too many to trace");

@@ -32,6 +32,33 @@ export class Catalogue {
     laws = laws.filter((law) => law.motions);
     Object.assign(this, { parameters, laws, fields });
     this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
+    // The parameters of formulas, with those that only they have.
+    this.formulas = new Map();
+    const { formula, parameters: known } = this.law("formula");
+    this.keep(formula, { known, own: [] });
+  }
+
+  /** Keeps the parameters of a formula: names of `known` ones, and what its `own` ones are. */
+  keep(formula, { known, own }) {
+    for (const parameter of own) this.byName.set(parameter.name, parameter);
+    this.formulas.set(formula, { known, own: own.map(({ name }) => name) });
+  }
+
+  /** The parameters that only the formula of a view has; while it has a mistake, those before. */
+  own(state) {
+    return state.law === "formula" ? this.#formula(state).own : [];
+  }
+
+  #formula({ formula, understood }) {
+    const none = { known: [], own: [] };
+    return this.formulas.get(formula) ?? this.formulas.get(understood) ?? none;
+  }
+
+  /** The parameters by which the friction law of a view is described, besides μ_S. */
+  described(state) {
+    if (state.law === "formula") return [...this.#formula(state).known, ...this.own(state)];
+    const { parameters = [], optional = [] } = this.law(state.law) ?? {};
+    return [...parameters, ...optional];
   }
 
   /** What a parameter is. */

@@ -8,7 +8,7 @@ const UNREAD = 2;
 const MISSING = 4;
 const BEYOND = 8;
 /** Bits of a status that say that something is amiss with a cell. */
-const AMISS = 2 | 4 | 8 | 16;
+const AMISS = 2 | 4 | 8 | 16 | 64;
 /** The status of a cell that is not computed. */
 const NO_STATUS = 255;
 /** What stands for no value, by how a field is stored; NaN for real numbers. */

@@ -2,6 +2,7 @@
 
 import { SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
+import { learn, parted } from "./formula.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
 import { parametersOf, pointTexts } from "./sweep.js";
@@ -52,6 +53,7 @@ export class Controls {
       this.changed();
     });
     element("law").addEventListener("change", (event) => this.takeLaw(event.target.value));
+    element("law-formula").addEventListener("input", (event) => this.#read(event.target.value));
     for (const [id, key] of TABLE_INPUTS) {
       element(id).addEventListener("input", (event) => {
         state[key] = event.target.value;
@@ -78,6 +80,42 @@ export class Controls {
     this.#mendAxes();
   }
 
+  /** Takes a formula: its parameters get sliders, and a mistake is told beside it. */
+  async #read(formula) {
+    const { state } = this;
+    this.reading?.abort();
+    this.reading = new AbortController();
+    const { signal } = this.reading;
+    let mistake = null;
+    try {
+      await learn(this.catalogue, this.source, formula, signal);
+      if (!signal.aborted) state.understood = formula;
+    } catch (error) {
+      mistake = error;
+    }
+    if (signal.aborted) return;
+    if (mistake && !mistake.status) {
+      this.failed(mistake);
+      return;
+    }
+    state.formula = formula;
+    if (mistake) this.refused = formula;
+    this.#tellMistake(mistake);
+    this.#mendAxes();
+  }
+
+  #tellMistake(mistake) {
+    element("law-formula").setAttribute("aria-invalid", String(mistake !== null));
+    const place = element("formula-mistake");
+    place.replaceChildren();
+    if (mistake === null) return;
+    if (mistake.text) {
+      const [before, wrong, behind] = parted(mistake);
+      place.append(make("code", {}, before, make("u", {}, wrong), behind), " ");
+    }
+    place.append(this.words(mistake));
+  }
+
   #mendAxes() {
     const { state, catalogue } = this;
     const names = parametersOf(state, catalogue);
@@ -96,6 +134,7 @@ export class Controls {
     [element("show").value, element("law").value] = [state.show, state.law];
     element("units").value = state.units;
     for (const [id, key] of TABLE_INPUTS) element(id).value = state[key];
+    this.#showFormula();
     const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
@@ -113,6 +152,20 @@ export class Controls {
     element("axes").replaceChildren(legend, ...axes.map((axis) => this.#axis(names, ...axis)));
     if (focused && document.activeElement?.id !== focused) element(focused)?.focus();
     this.#tellLaw();
+  }
+
+  /** Shows the formula of the view. One whose parameters are not known is asked for again. */
+  #showFormula() {
+    const { state, catalogue } = this;
+    const input = element("law-formula");
+    if (input.value !== state.formula) input.value = state.formula;
+    if (catalogue.formulas.has(state.formula)) {
+      state.understood = state.formula;
+      this.#tellMistake(null);
+    } else if (state.law === "formula" && this.refused !== state.formula) {
+      this.refused = state.formula;
+      this.#read(state.formula);
+    }
   }
 
   /** The text of a parameter: its symbol, and what it is. */
@@ -230,10 +283,17 @@ export class Controls {
     const { state } = this;
     element("law-part").hidden = state.law === "none";
     element("table-input").hidden = state.law !== "table";
+    element("formula-input").hidden = state.law !== "formula";
     if (state.law === "none") return;
-    const { formula } = this.catalogue.laws.find(({ name }) => name === state.law) ?? {};
-    element("formula").textContent = formula ?? "a measured curve, monotone between its points";
+    const own = "an expression in v; other names in it get sliders";
+    const { formula } = this.catalogue.law(state.law) ?? {};
+    const told = formula ?? "a measured curve, monotone between its points";
+    element("formula").textContent = state.law === "formula" ? own : told;
     this.laws?.abort();
+    if (state.law === "formula" && !this.catalogue.formulas.has(state.formula)) {
+      element("law-told").textContent = "";
+      return;
+    }
     this.laws = new AbortController();
     try {
       const point = [state.x, state.y].map(({ name }) => this.catalogue.value(state, name));

@@ -4,6 +4,7 @@ import { Catalogue, withoutZero } from "./catalogue.js";
 import { isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
 import { copy, download, element } from "./dom.js";
+import { learn } from "./formula.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
 import { Panel, counted } from "./panel.js";
@@ -13,8 +14,8 @@ import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
-import { addressOf, leavesTable, stateOf } from "./state.js";
-import { parametersOf, pointTexts } from "./sweep.js";
+import { addressOf, formulaOf, leavesTable, stateOf } from "./state.js";
+import { pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
 
 /** How long after the last change the address and the panel follow, in milliseconds. */
@@ -158,7 +159,7 @@ class Explorer {
   }
 
   #address() {
-    return addressOf(this.state, parametersOf(this.state, this.catalogue));
+    return addressOf(this.state, this.catalogue);
   }
 
   /** Address, panel and table follow when nothing changes any more. */
@@ -406,8 +407,11 @@ class Explorer {
       event.preventDefault();
       element("chart-title").focus();
     });
-    window.addEventListener("hashchange", () => {
-      if (location.hash === this.#address()) return;
+    window.addEventListener("hashchange", async () => {
+      const { hash } = location;
+      if (hash === this.#address()) return;
+      if (formulaOf(hash) !== null) await learnAddress(this.catalogue, this.source);
+      if (hash !== location.hash) return;
       Object.assign(this.state, stateOf(location.hash, this.catalogue));
       this.#tellNotes(this.state.notes);
       this.#keepWhole();
@@ -449,10 +453,18 @@ class Explorer {
   }
 }
 
+/** Learns the parameters of the formula in the address; a mistake in it is told with the chart. */
+async function learnAddress(catalogue, source) {
+  const formula = formulaOf(location.hash);
+  if (formula !== null) await learn(catalogue, source, formula).catch(() => {});
+}
+
 async function begin() {
   try {
     const source = await openSource();
-    const explorer = new Explorer(source, new Catalogue(await source.parameters()));
+    const catalogue = new Catalogue(await source.parameters());
+    await learnAddress(catalogue, source);
+    const explorer = new Explorer(source, catalogue);
     // For tests and the curious.
     window.slipmap = explorer;
   } catch (error) {

@@ -21,6 +21,7 @@ const FLAGS = [
   [8, "two methods disagree"],
   [16, "more than can be counted"],
   [32, "recomputed by a second method"],
+  [64, "outside the model's range"],
 ];
 
 /** The scale of an axis from the edge of its first cell to that of its last one. */

@@ -94,6 +94,7 @@ function server() {
     vc: (toml, signal) => json(post("vc", toml, signal)),
     motion: (toml, signal) => decoded(post("motion", toml, signal)),
     law: (toml, signal) => json(post("law", toml, signal)),
+    formula: (toml, signal) => json(post("formula", toml, signal)),
     parameters: (signal) => json(get("parameters", signal)),
     maps: (signal) => json(get("maps", signal)),
     map: (id, signal) => json(get(`maps/${id}`, signal)),
@@ -229,6 +230,7 @@ function page() {
     vc: (toml, signal) => json("vc", toml, signal),
     motion: async (toml, signal) => decode((await ask(others, "motion", toml, signal)).bytes),
     law: (toml, signal) => json("law", toml, signal),
+    formula: (toml, signal) => json("formula", toml, signal),
     parameters: (signal) => json("parameters", "", signal),
   };
 }

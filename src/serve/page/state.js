@@ -10,6 +10,9 @@ const START = {
   y: { name: "tau", from: 0, to: 12, log: false },
   values: { mu_prime: -0.3 },
   law: "none",
+  // The expression of a formula, and the last one that was understood.
+  formula: "",
+  understood: "",
   table: "",
   columns: "",
   speedUnit: "",
@@ -35,13 +38,20 @@ const tableText = ({ law, table }) => (law === "table" ? table.trim() : "");
 /** Whether the friction law of a view is too long for its address. */
 export const leavesTable = (state) => !state.map && tableText(state).length > LONGEST_TABLE;
 
+/** The formula of an address; null if it says none. */
+export const formulaOf = (fragment) =>
+  new URLSearchParams(fragment.replace(/^#/, "")).get("formula");
+
+/** The word for a parameter in an address: names that only a formula has could be other words. */
+const wordOf = (name, own) => (own.includes(name) ? `own.${name}` : name);
+
 /**
  * The fragment of the address of a view.
  * @param {object} state
- * @param {string[]} parameters those on which the chart depends
+ * @param {import("./catalogue.js").Catalogue} catalogue
  * @returns {string} beginning with #
  */
-export function addressOf(state, parameters) {
+export function addressOf(state, catalogue) {
   const parts = [["v", VERSION]];
   const put = (key, value) => parts.push([key, String(value)]);
   const axis = ({ name, from, to, log }) => `${name},${from},${to}${log ? ",log" : ""}`;
@@ -60,8 +70,11 @@ export function addressOf(state, parameters) {
     put("control", state.control);
     put("x", axis(state.x));
     put("y", axis(state.y));
-    for (const name of parameters) if (name in state.values) put(name, state.values[name]);
+    const own = catalogue.own(state);
+    for (const name of parametersOf(state, catalogue))
+      if (name in state.values) put(wordOf(name, own), state.values[name]);
     if (state.law !== "none") put("law", state.law);
+    if (state.law === "formula") put("formula", state.formula);
     const table = tableText(state);
     if (table.length <= LONGEST_TABLE && table) put("table", table);
     if (table && state.columns) put("columns", state.columns);
@@ -135,8 +148,8 @@ function mapOf(said) {
 }
 
 /**
- * The view of an address; what it does not say, or not in an understandable way, is as at the
- * start, and `notes` tell of it.
+ * The view of an address, whose formula is known already. What it does not say, or not in an
+ * understandable way, is as at the start, and `notes` tell of it.
  * @param {string} fragment
  * @param {import("./catalogue.js").Catalogue} catalogue
  */
@@ -146,6 +159,7 @@ export function stateOf(fragment, catalogue) {
   const notes = [];
   const state = { ...START, x: { ...START.x }, y: { ...START.y }, values: { ...START.values } };
   state.notes = notes;
+  state.formula = catalogue.law("formula").formula;
   if (get("v") !== VERSION) {
     if ([...said].length > 0) notes.push("it is none of this version of the page");
     return state;
@@ -167,13 +181,16 @@ export function stateOf(fragment, catalogue) {
     else notes.push(`"${value}" is no ${what} of the live chart`);
   }
   [state.columns, state.speedUnit] = [get("columns") ?? "", get("speed_unit") ?? ""];
+  if (get("formula") !== null) state.formula = get("formula");
   if (get("table")) state.table = get("table");
   else if (state.law === "table") notes.push("its table was too long: paste it again");
+  const own = catalogue.own(state);
   for (const name of parametersOf(state, catalogue)) {
-    if (get(name) === null) continue;
-    const [value, about] = [number(get(name)), catalogue.about(name)];
+    const text = get(wordOf(name, own));
+    if (text === null) continue;
+    const [value, about] = [number(text), catalogue.about(name)];
     if (value >= about.range[0] && value <= about.range[1]) state.values[name] = value;
-    else notes.push(`${name} = ${get(name)} is outside its range: ${about.allowed}`);
+    else notes.push(`${name} = ${text} is outside its range: ${about.allowed}`);
   }
   readAxes(state, said, catalogue, notes);
   state.point = pairOf(get("at"));

@@ -5,8 +5,7 @@ import { GAINS } from "./catalogue.js";
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
   // Of parameters that say the same, the page offers as many as a law needs.
-  const { parameters = [], optional = [] } = catalogue.law(state.law) ?? {};
-  const described = [...parameters, ...optional].filter((name) => catalogue.about(name).page);
+  const described = catalogue.described(state).filter((name) => catalogue.about(name).page);
   const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
   const folded = ["feedback", "model"].flatMap((box) => catalogue.folded(box));
   return [...sliding, ...GAINS[state.control], "tau", ...folded];
@@ -15,7 +14,7 @@ export function parametersOf(state, catalogue) {
 const line = (name, value) => `${name} = ${value}\n`;
 
 /** A text as TOML writes it. */
-const quoted = (text) => JSON.stringify(text).replace(/\x7f/g, "\\u007f");
+export const quoted = (text) => JSON.stringify(text).replace(/\x7f/g, "\\u007f");
 
 /** The text of a measured friction law, and what is said of its columns. */
 function tableOf({ table, columns, speedUnit }) {
@@ -35,6 +34,7 @@ function tablesOf(state, catalogue, names) {
   if (state.law !== "none") {
     text += `\n[friction]\nlaw = "${state.law}"\n`;
     if (state.law === "table") text += tableOf(state);
+    if (state.law === "formula") text += line("mu_k", quoted(state.formula));
     text += names
       .filter((name) => catalogue.about(name).group === "law")
       .map((name) => line(name, value(name)))

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::SweepFile;
+use crate::model::ModelError;
 use crate::setting::axis::{Axis, plane_of_curves};
 use crate::setting::best_plane::gain_plane;
 use crate::setting::field::Field;
@@ -108,7 +109,8 @@ impl SweepFile<'_> {
         }
     }
 
-    /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S.
+    /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S. A
+    /// formula has to be so in one of them.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
         if fixed.formula().is_some() {
             let of_law = |axis: &&Axis| match axis.parameter.known() {
@@ -117,7 +119,8 @@ impl SweepFile<'_> {
             };
             let axes: Vec<&Axis> = self.spec.axes.iter().filter(of_law).collect();
             let each = values_each(&axes);
-            return self.check_formula(&axes, each, &mut fixed.clone());
+            let found = self.check_formula(&axes, each, &mut fixed.clone());
+            return found.map_or(Ok(()), Err);
         }
         let mut worst = fixed.clone();
         for axis in &self.spec.axes {
@@ -156,38 +159,48 @@ fn values_each(axes: &[&Axis]) -> usize {
         .unwrap_or(2)
 }
 
+/// Why friction has no coefficient at rest or at v0; none where it has one.
+fn no_coefficient(setting: &Setting) -> Option<ModelError> {
+    let has_v0 = !setting.get(Parameter::V0).is_nan();
+    match has_v0 {
+        true => setting.sliding_point().err(),
+        false => setting.friction_law().err(),
+    }
+}
+
+/// The error, with the value of an axis at which it is found.
+fn at_value(error: SpecError, axis: &Axis, value: f64) -> SpecError {
+    let at = format!("{} = {}", axis.parameter.name(), Shown(value));
+    let help = match &error.help {
+        Some(more) => format!("{more}, {at}"),
+        None => format!("at {at}"),
+    };
+    error.help(help)
+}
+
 /// Formulas, whose worst values are not known beforehand.
 impl SweepFile<'_> {
-    /// Checks that a formula has a coefficient at rest and at v0 for up to `each` values of these
-    /// axes, the last ones innermost.
+    /// The first error of a formula where it has no coefficient at rest or at v0 for any of up to
+    /// `each` values of these axes, the last ones innermost; none where it has one.
     fn check_formula(
         &self,
         axes: &[&Axis],
         each: usize,
         setting: &mut Setting,
-    ) -> Result<(), SpecError> {
+    ) -> Option<SpecError> {
         let Some((axis, others)) = axes.split_first() else {
-            let has_v0 = !setting.get(Parameter::V0).is_nan();
-            let law = setting.friction_law().and_then(|_| match has_v0 {
-                true => setting.sliding_point().map(|_| ()),
-                false => Ok(()),
-            });
-            return law.map_err(|error| self.given.refused(&error));
+            let error = no_coefficient(setting)?;
+            return Some(self.given.refused(&error));
         };
         let (count, last) = (each.min(axis.len()), axis.len() - 1);
+        let mut first = None;
         for i in 0..count {
             let value = axis.values[i * last / (count - 1).max(1)];
             setting.vary(&axis.parameter, value);
-            self.check_formula(others, each, setting).map_err(|error| {
-                let at = format!("{} = {}", axis.parameter.name(), Shown(value));
-                let help = match &error.help {
-                    Some(more) => format!("{more}, {at}"),
-                    None => format!("at {at}"),
-                };
-                error.help(help)
-            })?;
+            let error = self.check_formula(others, each, setting)?;
+            first.get_or_insert_with(|| at_value(error, axis, value));
         }
-        Ok(())
+        first
     }
 }
 

@@ -4,45 +4,32 @@ use super::boundaries::{DegreeCurves, joined, jumps, split};
 use crate::linear::curves::{PlaneCurves, Window};
 use crate::linear::general::curves::trace;
 use crate::linear::general::{SystemPlane, SystemSetting};
-use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
 use crate::setting::values::Setting;
 
 /// Traces the curves of the plane of the two parameters `of`. Once `stop` is set, the answer comes
-/// soon but is meaningless.
-///
-/// # Errors
-/// When a parameter is outside the model's range in a corner of the window.
+/// soon but is meaningless. Curves end where the setting has no model.
 pub(super) fn trace_window(
     setting: &Setting,
     of: [&Quantity; 2],
     window: &Window,
     degrees_of_stability: &[f64],
     stop: &Stop,
-) -> Result<Vec<DegreeCurves>, ModelError> {
-    let system_at = |p: f64, q: f64| -> Result<SystemSetting, ModelError> {
+) -> Vec<DegreeCurves> {
+    let at = |p: f64, q: f64| {
         let mut setting = setting.clone();
         setting.vary(of[0], p);
         setting.vary(of[1], q);
-        let (model, unit) = setting.linear()?;
-        Ok(SystemSetting {
+        let (model, unit) = setting.linear().ok()?;
+        Some(SystemSetting {
             system: model.system(),
             tau: setting.get(Parameter::Tau),
             unit,
         })
     };
-    for p in [window.p.start(), window.p.end()] {
-        for q in [window.q.start(), window.q.end()] {
-            system_at(*p, *q)?;
-        }
-    }
-    let jumps = match of[0].known() {
-        Some(parameter) => jumps(setting, parameter)?,
-        None => Vec::new(),
-    };
-    let at = |p: f64, q: f64| system_at(p, q).ok();
+    let jumps = jumps(setting, of[0]);
     let delays = of.map(|of| *of == Parameter::Tau || *of == Parameter::Latency);
     let has_lines = *of[1] == Parameter::Tau && setting.has_lines();
     let traced = |sigma: f64| {
@@ -60,5 +47,5 @@ pub(super) fn trace_window(
         }
     };
     let degrees = degrees_of_stability.iter().copied();
-    Ok(std::iter::once(0.0).chain(degrees).map(traced).collect())
+    std::iter::once(0.0).chain(degrees).map(traced).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::buffers::TileBuffers;
 use crate::critical::limit::LimitCell;
-use crate::linear::status::NOT_CONVERGED;
+use crate::linear::status::OUTSIDE_MODEL;
 use crate::setting::parameter::Parameter;
 use crate::setting::source::Source;
 use crate::sweep::plan::Plan;
@@ -18,7 +18,7 @@ pub(super) fn fill(plan: &Plan, tile: &Tile, strides: &[usize], buffers: &mut Ti
         let at = place_of(inside, strides);
         let [gamma, damping_ratio, mu_ratio] = Parameter::OF_LIMIT.map(|p| setting.get(p));
         let Ok(cell) = LimitCell::at(gamma, damping_ratio, mu_ratio) else {
-            buffers.status[at] = NOT_CONVERGED;
+            buffers.status[at] = OUTSIDE_MODEL;
             return;
         };
         buffers.status[at] = 0;

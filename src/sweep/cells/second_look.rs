@@ -5,7 +5,8 @@ use crate::answers::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
 use crate::linear::general;
-use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
+use crate::linear::line::Linear;
+use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, OUTSIDE_MODEL, SATURATED};
 use crate::model::ModelError;
 use crate::setting::field::{Field, number_of_transition};
 use crate::setting::search::Protocol;
@@ -72,7 +73,7 @@ pub enum Answer {
 /// Every question that can be asked of the cell at `index`, one index per axis, with its answer.
 ///
 /// # Errors
-/// When a parameter of the cell is outside the model's range.
+/// When a parameter of the cell is outside the model's range, and its status does not say so.
 pub fn second_look(
     plan: &Plan,
     index: &[usize],
@@ -82,18 +83,19 @@ pub fn second_look(
     let mut answers = Vec::new();
     let holds = |field| plan.spec.fields.contains(&field);
     if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::Abscissa)) {
-        let (model, unit) = setting.linear()?;
-        let tau = plan.delay(index) / unit;
-        let roots = model.roots_at_any_cost();
-        let right_of = |line: f64| match roots.right_of(tau, line) {
-            general::RightOf::Infinite => Some(u64::MAX),
-            other => other.finite(),
+        let tau = plan.delay(index);
+        let model = match setting.linear() {
+            Err(_) if has(stored, OUTSIDE_MODEL) => None,
+            model => Some(model?),
         };
-        if holds(Field::NUnstable) {
-            answers.push((Question::Count, count(&right_of, stored)));
-        }
-        if holds(Field::Abscissa) {
-            answers.push((Question::Abscissa, abscissa(&right_of, unit, stored)));
+        for (question, field) in [
+            (Question::Count, Field::NUnstable),
+            (Question::Abscissa, Field::Abscissa),
+        ] {
+            if holds(field) {
+                let of_roots = |model| of_roots(question, model, tau, stored);
+                answers.push((question, model.as_ref().map_or(Answer::Open, of_roots)));
+            }
         }
     }
     if plan.spec.follows_motions() && holds(Field::Outcome) {
@@ -120,6 +122,29 @@ pub fn second_look(
         answers.push((question, answer));
     }
     Ok(answers)
+}
+
+/// What the argument principle says at a delay, of the abscissa or of the count.
+fn of_roots(
+    question: Question,
+    (model, unit): &(Linear, f64),
+    tau: f64,
+    stored: &Stored,
+) -> Answer {
+    let roots = model.roots_at_any_cost();
+    let right_of = |line: f64| match roots.right_of(tau / unit, line) {
+        general::RightOf::Infinite => Some(u64::MAX),
+        other => other.finite(),
+    };
+    match question {
+        Question::Abscissa => abscissa(&right_of, *unit, stored),
+        _ => count(&right_of, stored),
+    }
+}
+
+/// Whether a cell is flagged with one of these, or outside the model's range.
+fn has(stored: &Stored, flags: u8) -> bool {
+    stored.status & (flags | OUTSIDE_MODEL) != 0
 }
 
 fn told(same: bool) -> Answer {
@@ -171,7 +196,7 @@ const SECOND_TOLERANCE: f64 = 1e-11;
 fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, ModelError> {
     let number = (stored.value)(Field::Outcome);
     let undecided = Outcome::Undecided as u8;
-    if stored.status & NOT_CONVERGED != 0 || number == f64::from(undecided) {
+    if has(stored, NOT_CONVERGED) || number == f64::from(undecided) {
         return Ok(Answer::Open);
     }
     let Some(case) = plan.spec.simulation.case(setting, 0.0)? else {
@@ -233,7 +258,7 @@ fn critical_velocity(
     stored: &Stored,
     holds_liftoff: bool,
 ) -> Result<Answer, ModelError> {
-    if stored.status & (NOT_CONVERGED | DISAGREE) != 0 {
+    if has(stored, NOT_CONVERGED | DISAGREE) {
         return Ok(Answer::Open);
     }
     let number = (stored.value)(Field::Outcome);
@@ -273,7 +298,7 @@ const BESIDE: f64 = 1e-4;
 fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answer, ModelError> {
     let vc = (stored.value)(Field::Vc);
     let lost = f64::from(number_of_transition(Transition::Lost));
-    let told_here = stored.status & (NOT_CONVERGED | DISAGREE) == 0;
+    let told_here = !has(stored, NOT_CONVERGED | DISAGREE);
     if !told_here || matches!(phase, Phase::Worst(_)) || (stored.value)(Field::Outcome) != lost {
         return Ok(Answer::Open);
     }

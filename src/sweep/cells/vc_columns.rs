@@ -9,7 +9,7 @@ use crate::answers::vc::{self, VcProblem};
 use crate::critical::along_delay::BLOCK;
 use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
-use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
+use crate::linear::status::{DISAGREE, NOT_CONVERGED, OUTSIDE_MODEL, SAMPLED};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::field::Field;
@@ -86,7 +86,7 @@ impl VcColumns {
     }
 
     /// Computes the critical velocities of a line into `buffers`. The status gains
-    /// [`NOT_CONVERGED`] where one stays unknown, [`SAMPLED`] and [`DISAGREE`].
+    /// [`NOT_CONVERGED`] where one stays unknown, [`OUTSIDE_MODEL`], [`SAMPLED`] and [`DISAGREE`].
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         let count = line.delays.len();
         if self.search.protocol == Protocol::Follow {
@@ -99,8 +99,6 @@ impl VcColumns {
                 buffers.status[here.place] |= status;
                 store(&cell, buffers, here.place);
             }
-            // The values of the sweep are checked: an error here means that the motion cannot be
-            // followed.
             Err(_) => store_nothing(buffers, here.place),
         });
         if line.stopped() {
@@ -195,7 +193,7 @@ fn store(cell: &VcCell, buffers: &mut TileBuffers, place: usize) {
 }
 
 fn store_nothing(buffers: &mut TileBuffers, place: usize) {
-    buffers.status[place] |= NOT_CONVERGED;
+    buffers.status[place] |= OUTSIDE_MODEL;
     buffers.put(place, |field| match field.source() {
         Source::Critical(_) | Source::MotionOrCritical(..) => Some(f64::NAN),
         _ => None,

@@ -13,7 +13,7 @@ use super::root_columns::RootColumns;
 use crate::linear::general::System;
 use crate::linear::line::Linear;
 use crate::linear::row::Delays;
-use crate::linear::status::NOT_CONVERGED;
+use crate::linear::status::OUTSIDE_MODEL;
 use crate::model::Groups;
 use crate::model::stop::Stop;
 use crate::setting::parameter::Parameter;
@@ -260,17 +260,16 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// A line outside the model's range: its cells keep fill values and are flagged as not
-    /// converged.
+    /// A line outside the model's range: its cells have no values, and their status says so.
     fn refuse_line(&mut self, at: usize) {
         self.refuse(at, self.delays.values().len());
     }
 
-    /// The first `len` cells of a line, from `at` on, keep fill values and are flagged.
+    /// The first `len` cells of a line, from `at` on, are outside the model's range.
     fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {
-            self.buffers.status[place] = NOT_CONVERGED;
+            self.buffers.status[place] = OUTSIDE_MODEL;
             if let Some(n) = &mut self.buffers.n_unstable {
                 n[place] = N_UNSTABLE_FILL;
             }
