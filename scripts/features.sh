@@ -25,11 +25,11 @@ if cargo clippy --version >/dev/null 2>&1; then
     check=(cargo clippy)
     strict=(-- -D warnings)
 fi
-for features in "" sweep explore store picture serve cli; do
+for features in "" sweep fit explore store picture serve cli; do
     say "features: ${features:-none}, $(packages "$features" | wc -l) packages"
     with=$features
     # Where libhdf5 is built from source, whatever needs it says so.
-    case $features in "" | sweep | explore) ;; *) [ -z "$SLIPMAP_CARGO_FEATURES" ] || with=$features,static-hdf5 ;; esac
+    case $features in "" | sweep | fit | explore) ;; *) [ -z "$SLIPMAP_CARGO_FEATURES" ] || with=$features,static-hdf5 ;; esac
     "${check[@]}" --quiet --locked --lib --no-default-features --features "$with" ${strict[@]+"${strict[@]}"}
 done
 

@@ -51,6 +51,7 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_CASES=100000 tests --test linear near_resonance::
     SLIPMAP_CASES=1000 tests --test linear best_general::
     PROPTEST_CASES=20000 tests --lib model::
+    SLIPMAP_CASES=1000 tests --test program fits::
     SLIPMAP_CASES=100 SLIPMAP_GRID=40 SLIPMAP_PLACES=1000 tests --test linear robust_beyond::
 done
 say "$round rounds"

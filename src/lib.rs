@@ -18,6 +18,7 @@
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
 //! | [`critical`] | the critical velocity below which stick-slip survives | |
 //! | [`setting`] | parameters, fields, laws, units, settings, the files that name them | `sweep` |
+//! | [`fit`] | friction laws fitted to measured points | `fit` |
 //! | [`answers`] | margins, best settings, motions, critical velocities of a setting | `sweep` |
 //! | [`sweep`] | plans, the engine that computes maps, what a map says | `sweep` |
 //! | [`explore`] | requests about a point or a plane, as plain data | `explore` |
@@ -78,6 +79,9 @@ pub mod equations {}
 #[cfg(feature = "explore")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod explore;
+#[cfg(feature = "fit")]
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
+pub mod fit;
 #[cfg(feature = "cli")]
 pub(crate) mod letter;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]

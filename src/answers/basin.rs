@@ -11,6 +11,7 @@
 //! linearly unstable the share is 0, whatever is undecided: only exceptional starts end in an
 //! unstable state.
 
+use super::sobol;
 use crate::linear::MarginalTolerance;
 use crate::model::stop::Stop;
 use crate::setting::basin::{Basin, Over, SCRAMBLINGS};
@@ -237,7 +238,7 @@ impl BasinProblem {
     pub fn start(&self, place: Place) -> [f64; 2] {
         let seed = self.first + place.scrambling;
         let along = |dimension, [from, to]: [f64; 2]| {
-            let part = f64::from(sobol_burley::sample(place.number, dimension, seed));
+            let part = sobol::part(place.number, dimension, seed);
             from + part * (to - from)
         };
         match self.region {

@@ -9,6 +9,7 @@ use crate::linear::best::{
     self, Best, General, Letter, Optimum, Place, Region, Rig, Robust, Search, SearchedGain,
 };
 use crate::linear::lobes::minimal_negative_load_gain;
+use crate::linear::margins::Changes;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::best_plane::{parameter_of, searched_gain};
@@ -241,8 +242,8 @@ pub fn best_settings(
 /// The best setting under joint errors of gain, delay and μ′.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSetting {
-    /// The largest relative error of each.
-    pub spread: f64,
+    /// The largest relative errors of gain, delay and μ′.
+    pub spread: Changes,
     /// The setting, with its slowest decay under these errors; in the units of the parameters.
     pub robust: Robust,
     /// The slowest decay around the setting of fastest decay, under the same errors, and whether it
@@ -251,8 +252,9 @@ pub struct RobustSetting {
 }
 
 /// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
-/// relative errors of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′. None for the latter
-/// where no setting stays stable. Once `stop` is set, the answer comes soon but is meaningless.
+/// relative errors of gain, delay and μ′ of up to `spread`, those of gain and delay less than 1.
+/// None for the latter where no setting stays stable. Once `stop` is set, the answer comes soon but
+/// is meaningless.
 ///
 /// # Errors
 /// As [`best_settings`], and under friction with a state, of which the slope μ′ does not say all.
@@ -260,7 +262,7 @@ pub fn robust_setting(
     setting: &Setting,
     gain: SearchedGain,
     ranges: &Ranges,
-    spread: f64,
+    spread: Changes,
     stop: &Stop,
 ) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
     let searched = parameter_of(gain).into();
@@ -311,7 +313,7 @@ impl Scales {
         search: &Search<Rig>,
         found: &Best,
         robust: &Robust,
-        spread: f64,
+        spread: Changes,
         stop: &Stop,
     ) -> RobustSetting {
         let best = Place {

@@ -195,7 +195,7 @@ impl SettingMargins {
             return on_case!(&self.case, case => margins::radius_with_law(case, &law, v0));
         }
         let still = self.oscillator.dashpot_ratios().sum();
-        on_case!(&self.case, case => margins::radius_up_to(case, 1.0, still))
+        on_case!(&self.case, case => margins::radius_within(case, [1.0; 3], still))
     }
 
     fn sliding(&self) -> Option<(SlidingLaw<'_>, f64)> {

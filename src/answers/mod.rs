@@ -1,10 +1,12 @@
 //! Answers about one setting, in its own units.
 //!
 //! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
-//!   sequence, followed and counted; the only file that imports sobol_burley
+//!   sequence, followed and counted
 //! - `best`: best settings in physical units, the ranges searched by default
 //! - `margins`: margins of a setting, in its own units
+//! - `of_fit`: the share of the laws that a fit allows for which a setting is stable
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
+//! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
 //! - `trace`: a motion sampled over time, with its events
 //! - `trace_error`: why there is no trace of a motion
 //! - `vc`: the critical velocity of a setting by either protocol, the regime of a working velocity,
@@ -13,7 +15,9 @@
 pub mod basin;
 pub mod best;
 pub mod margins;
+pub mod of_fit;
 pub mod samples;
+mod sobol;
 pub mod trace;
 mod trace_error;
 pub mod vc;

@@ -2,17 +2,19 @@
 
 use std::path::PathBuf;
 
-use crate::answers::best::{Ranges, best_settings, default_ranges, robust_setting};
+use crate::answers::best::{Ranges, best_settings, default_ranges};
 use crate::explore::point::Point;
 use crate::explore::stability::Wanted;
 use crate::explore::vc::CriticalVelocity;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::amount::Amount;
+use crate::setting::point_file::PointOf;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::Protocol;
 use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::system::SystemModel;
+use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::Shown;
 use crate::text::nearest::did_you_mean;
@@ -29,8 +31,10 @@ use super::output::warn_beyond_curve;
 use super::parameter_values::{amount_of, parse_amount};
 use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
+use super::robust::Spread;
 use super::say::{self, ForPeople};
 use super::setting;
+use super::sweep_file::read_setting;
 use super::system_args::{OTHERS, SystemArgs};
 
 #[derive(Debug, clap::Args)]
@@ -79,9 +83,14 @@ pub(super) struct Args {
           value_parser = amount_of(Parameter::Tau))]
     tau_to: Option<Amount>,
     /// Also find the setting of a block, whatever its feedback has, whose slowest decay is fastest
-    /// when gain, delay and μ′ may all be off by this part of them, such as 0.05
-    #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
-    robust: Option<f64>,
+    /// when gain, delay and μ′ may all be off by this part of them, such as 0.05; or, with `fit`,
+    /// when friction may be off by three standard errors of the fit in --setting
+    #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = Spread::read)]
+    robust: Option<Spread>,
+    /// Take all but the delay and the gain that is searched from this file, as `slipmap fit --save`
+    /// or `slipmap best --save` writes it
+    #[arg(long, value_name = "SETTING.toml", conflicts_with = "system")]
+    setting: Option<PathBuf>,
     /// Write the setting (the robust one with --robust), if it is stable, to a file; point and
     /// margins take it with --setting, and with a friction law vc, basin and simulate
     #[arg(long, value_name = "SETTING.toml")]
@@ -89,12 +98,6 @@ pub(super) struct Args {
     /// One JSON object on standard output
     #[arg(long)]
     json: bool,
-}
-
-fn parse_spread(text: &str) -> Result<f64, String> {
-    let spread = text.trim().parse().ok();
-    let spread = spread.filter(|s: &f64| (1e-6..=0.9).contains(s));
-    spread.ok_or_else(|| "expected a part, from 1e-6 to 0.9, such as 0.05 for 5 %".to_owned())
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -152,9 +155,7 @@ impl Args {
             setting::check_save(path)?;
         }
         let gain = self.control().parameter();
-        let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges \
-            of the search";
-        let setting = self.parameters.setting_but(&[gain, Parameter::Tau], help)?;
+        let (setting, units) = self.block(gain)?;
         let refused = |error: ModelError| self.parameters.refused(&error);
         setting.sliding_point().map_err(refused)?;
         if self.robust.is_some() && setting.rate_and_state().is_some() {
@@ -166,10 +167,29 @@ impl Args {
         }
         let asked = Asked {
             setting,
-            units: self.parameters.units(),
+            units,
             named: None,
         };
         Ok((asked, gain.into()))
+    }
+
+    /// The block without its delay and the gain that is searched, from a file or flags, and its
+    /// units.
+    fn block(&self, gain: Parameter) -> Result<(Setting, Units), Failure> {
+        let Some(path) = &self.setting else {
+            let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the \
+                ranges of the search";
+            let setting = self.parameters.setting_but(&[gain, Parameter::Tau], help)?;
+            return Ok((setting, self.parameters.units()));
+        };
+        alone("--setting", self.parameters.any_but(&[]))?;
+        let mut point = read_setting(path, PointOf::SlidingAtAnyDelay)?;
+        for searched in [gain, Parameter::Tau] {
+            let value = searched.default_value().unwrap_or(f64::NAN);
+            point.setting.set(searched, value);
+        }
+        warn_beyond_curve(point.setting.curve_remark(&point.units));
+        Ok((point.setting, point.units))
     }
 
     /// The system from a file, and the parameter of it that is searched.
@@ -292,11 +312,14 @@ impl Args {
         ranges: Ranges,
     ) -> Result<Recommended, Failure> {
         let (setting, stop) = (&asked.setting, Stop::default());
-        let (found, robust) = match self.robust {
-            Some(spread) => {
-                robust_setting(setting, self.control().searched(), &ranges, spread, &stop)?
-            }
-            None => (best_settings(setting, &searched, &ranges, &stop)?, None),
+        let gain = self.control().searched();
+        let (found, robust, may_be_off) = match self.robust {
+            None => (
+                best_settings(setting, &searched, &ranges, &stop)?,
+                None,
+                None,
+            ),
+            Some(spread) => spread.settings(setting, gain, &ranges, &stop)?,
         };
         let (value, tau) = match &robust {
             Some(of) => (of.robust.gain, of.robust.tau),
@@ -321,7 +344,7 @@ impl Args {
             },
             searched,
             ranges,
-            spread: self.robust,
+            may_be_off,
             found,
             robust,
             vc,

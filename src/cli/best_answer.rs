@@ -10,6 +10,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::recommended::{Control, Recommended};
+use super::robust::MayBeOff;
 
 /// The JSON of a search.
 #[derive(Debug, Serialize)]
@@ -59,8 +60,14 @@ pub(super) struct SystemBest {
 /// A robust setting.
 #[derive(Debug, Serialize, ToSchema)]
 struct RobustOut {
-    /// The relative spread of gain, delay and μ′.
+    /// The largest of `spreads`.
     spread: f64,
+    /// The relative spreads of gain, delay and μ′.
+    spreads: [f64; 3],
+    /// How many standard errors of the fit of the friction law these are; null where it is not by a
+    /// fit that they were asked for.
+    #[schema(required)]
+    standard_errors: Option<f64>,
     alpha: f64,
     tau: f64,
     /// The spectral abscissa of the setting itself.
@@ -77,11 +84,16 @@ struct RobustOut {
     worst_abscissa_of_best: f64,
 }
 
-impl From<&RobustSetting> for RobustOut {
-    fn from(of: &RobustSetting) -> Self {
+impl RobustOut {
+    fn of(of: &RobustSetting, may_be_off: Option<MayBeOff>) -> Self {
         let found = &of.robust;
         Self {
-            spread: of.spread,
+            spread: of.spread.into_iter().fold(0.0, f64::max),
+            spreads: of.spread,
+            standard_errors: match may_be_off {
+                Some(MayBeOff::Errors(errors, _)) => Some(errors),
+                _ => None,
+            },
             alpha: found.gain,
             tau: found.tau,
             abscissa: found.abscissa,
@@ -202,7 +214,10 @@ impl Answer {
                 best: (&found.overall).into(),
                 regions: found.regions.iter().map(Into::into).collect(),
                 regions_left_out: found.regions_left_out,
-                robust: told.robust.as_ref().map(Into::into),
+                robust: told
+                    .robust
+                    .as_ref()
+                    .map(|of| RobustOut::of(of, told.may_be_off)),
                 margins: point.margins.clone(),
                 vc: told.vc.clone(),
             })),

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use crate::answers::of_fit::MOST_ERRORS;
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::linear::best::Optimum;
 use crate::report::numbers::{counted, rounded, unit_behind};
@@ -9,8 +10,10 @@ use crate::setting::{Field, Parameter};
 use crate::text::finite;
 
 use super::asked::Asked;
+use super::margins::of_what_is_given;
 use super::output::tell_dimensionless;
 use super::recommended::{Control, Recommended};
+use super::robust::MayBeOff;
 use super::{margins, vc};
 
 /// A number with as many digits as a person can use.
@@ -67,8 +70,8 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
         ..
     } = told;
     let units = &asked.units;
-    if let Some(spread) = told.spread {
-        print_robust(out, spread, told)?;
+    if let Some(may_be_off) = told.may_be_off {
+        print_robust(out, may_be_off, told)?;
     }
     let best = &found.overall;
     let time = unit_behind(&units.time());
@@ -164,12 +167,17 @@ fn print_system(
 }
 
 /// The robust setting, beside what the best one is worth within the same spread.
-fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::io::Result<()> {
-    let percent = 100.0 * spread;
+fn print_robust(
+    out: &mut impl Write,
+    may_be_off: MayBeOff,
+    told: &Recommended,
+) -> std::io::Result<()> {
+    let off = what_is_off(may_be_off);
     let Some(of) = &told.robust else {
-        let none = "no setting found in the ranges stays stable when gain, delay and mu_prime may \
-                    each be off by";
-        return writeln!(out, "{none} {percent} %");
+        return writeln!(
+            out,
+            "no setting found in the ranges stays stable when {off}"
+        );
     };
     let units = &told.asked.units;
     let (rate, time) = (unit_behind(&units.rate()), unit_behind(&units.time()));
@@ -184,10 +192,7 @@ fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::i
         };
         format!("{}{rate} within the spread{lost}", short(worst))
     };
-    writeln!(
-        out,
-        "when gain, delay and mu_prime may each be off by {percent} %, sliding relaxes fastest at"
-    )?;
+    writeln!(out, "when {off}, sliding relaxes fastest at")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let found = &of.robust;
     row(
@@ -204,9 +209,41 @@ fn print_robust(out: &mut impl Write, spread: f64, told: &Recommended) -> std::i
         "worst_abscissa",
         within(found.worst_abscissa, found.abscissa),
     )?;
-    row("certified", yes_or_no(found.certified).into())?;
+    let certified = match found.certified {
+        true if told.asked.setting.law().is_some() => {
+            format!("yes, proved{}", of_what_is_given(&told.asked.setting))
+        }
+        certified => yes_or_no(certified).to_owned(),
+    };
+    row("certified", certified)?;
     let (worst, _) = of.worst_of_best;
     row("best setting", within(worst, told.found.overall.abscissa))
+}
+
+/// What may be off at a robust setting, in words.
+fn what_is_off(of: MayBeOff) -> String {
+    let percent = |part: f64| format!("{} %", rounded(100.0 * part, 2));
+    match of {
+        MayBeOff::Part(part) => format!(
+            "gain, delay and mu_prime may each be off by {} %",
+            100.0 * part
+        ),
+        MayBeOff::Errors(errors, [gain, _, slope]) => {
+            let mu_k = match gain > 0.0 {
+                true => format!(" and mu_k by {}", percent(gain)),
+                false => String::new(),
+            };
+            let most = match errors < MOST_ERRORS {
+                true => ", the most that a setting stands",
+                false => "",
+            };
+            format!(
+                "mu_prime may be off by {}{mu_k}, {} standard errors of the fit{most}",
+                percent(slope),
+                rounded(errors, 2),
+            )
+        }
+    }
 }
 
 /// Margins of the setting that is recommended, and v_c where there is a friction law.

@@ -147,7 +147,7 @@ impl CellArgs {
             (texts.vc, &[Needed::Law, Needed::Delay][..])
         } else {
             let units = self.plan()?.map(|plan| &plan.spec.units);
-            warn_beyond_curve(units.and_then(|units| setting.beyond_curve(units)));
+            warn_beyond_curve(units.and_then(|units| setting.curve_remark(units)));
             (texts.point, &[Needed::V0, Needed::Delay][..])
         };
         let text = text.ok_or_else(|| without(&setting, needed))?;

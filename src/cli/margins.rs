@@ -2,12 +2,13 @@
 
 use std::io::Write;
 
-use crate::explore::margins::{Margin, Margins, StabilityBox};
+use crate::explore::margins::{FitMargin, Margin, Margins, StabilityBox};
 use crate::explore::point::Point;
 use crate::explore::stability::{Stability, Wanted};
 use crate::model::stop::Stop;
 use crate::report::numbers::{counted, rounded, unit_behind};
 use crate::setting::amount::Amount;
+use crate::setting::law_kind::LawKind;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::{Shown, finite};
@@ -130,7 +131,11 @@ pub(super) fn print(
 ) -> std::io::Result<()> {
     let rate = unit_behind(&units.rate());
     if !margins.decays {
-        return writeln!(out, "{}", without_margins(margins, violations, &rate));
+        writeln!(out, "{}", without_margins(margins, violations, &rate))?;
+        return match &margins.fit {
+            Some(fit) => writeln!(out, "  {:<16} {}", "fit", of_fit(fit, margins, units)),
+            None => Ok(()),
+        };
     }
     let wanted = match margins.required_decay {
         0.0 => "stable".to_owned(),
@@ -167,7 +172,14 @@ pub(super) fn print(
     }
     print_loop(&mut row, margins, units)?;
     if let Some(found) = &margins.stability_box {
-        row("stability_radius", radius(margins.stability_radius, found))?;
+        let of = of_what_is_given(setting);
+        row(
+            "stability_radius",
+            radius(margins.stability_radius, found, of),
+        )?;
+    }
+    if let Some(fit) = &margins.fit {
+        row("fit", of_fit(fit, margins, units))?;
     }
     tell_dimensionless(out, units)
 }
@@ -259,12 +271,44 @@ fn along(margin: &Margin, at: f64, unit: &str) -> String {
     }
 }
 
-fn radius(proved: f64, found: &StabilityBox) -> String {
+/// What the errors of a fitted law leave open.
+pub(super) fn of_fit(fit: &FitMargin, margins: &Margins, units: &Units) -> String {
+    let has = match margins.required_decay {
+        0.0 => "stable",
+        _ => "so",
+    };
+    let (rate, slope) = (units.rate(), units.of_parameter(Parameter::MuPrime));
+    let mut text = format!(
+        "{has} for {} % of {} friction laws that the points allow; the worst, with mu_prime = \
+         {}{}, has abscissa {}{}",
+        rounded(100.0 * fit.share, 3),
+        fit.draws,
+        rounded(fit.worst_mu_prime, 4),
+        unit_behind(&slope),
+        rounded(fit.worst_abscissa, 4),
+        unit_behind(&rate),
+    );
+    if fit.unknown > 0 {
+        text += &format!("; of {} it is not known", fit.unknown);
+    }
+    text
+}
+
+/// Of what friction something is proved, behind that.
+pub(super) fn of_what_is_given(setting: &Setting) -> &'static str {
+    match setting.law() {
+        None => "",
+        Some(LawKind::Table(_)) => " of the curve that was given",
+        Some(_) => " of the friction law that was given",
+    }
+}
+
+fn radius(proved: f64, found: &StabilityBox, of: &str) -> String {
     let names = found.of.join(", ");
     let together = if found.of.len() > 1 { " together" } else { "" };
     // Rounded down: more is not proved.
     let percent = (1.0 - 5e-4) * 100.0 * proved;
-    let mut text = format!("{} %: {names}{together}, proved", rounded(percent, 3));
+    let mut text = format!("{} %: {names}{together}, proved{of}", rounded(percent, 3));
     if !found.tight {
         text += "; there may be more";
     }

@@ -15,6 +15,8 @@
 //! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
+//! - `fit`: `slipmap fit`
+//! - `fit_args`: the flags of `slipmap fit`: the rig, and how the file is to be read
 //! - `formula_args`: the friction law of `--friction formula`
 //! - `info`: `slipmap info`
 //! - `info_trace`: `slipmap info` for a trace
@@ -42,6 +44,7 @@
 //! - `recommended`: the setting that `slipmap best` recommends
 //! - `reference`: `slipmap reference`
 //! - `reproduce`: `slipmap reproduce`: the files that it may write, and its output
+//! - `robust`: what a robust setting is to stand, `--robust`, and the search for it
 //! - `run`: `slipmap run`
 //! - `say`: messages to the user
 //! - `schema`: `slipmap schema`
@@ -75,6 +78,8 @@ mod completions;
 mod excerpt;
 mod export;
 mod failure;
+mod fit;
+mod fit_args;
 mod formula_args;
 mod info;
 mod info_trace;
@@ -102,6 +107,7 @@ mod read_map;
 mod recommended;
 mod reference;
 mod reproduce;
+mod robust;
 mod run;
 mod say;
 mod schema;
@@ -193,6 +199,8 @@ commands! {
     Verify(verify, described),
     /// Say what a sweep or a motion would cost, without computing it
     Plan(plan, described),
+    /// Fit a friction law to measured points, with the error of its slope
+    Fit(fit, described),
     /// Everything about one point of parameter space
     Point(point, described),
     /// How far one point is from the boundary of stability, in every direction

@@ -43,6 +43,15 @@ impl Values {
         wanted: impl Fn(Group) -> bool,
         units: &Units,
     ) -> Result<Self, clap::Error> {
+        Self::those(matches, |parameter| wanted(parameter.group()), units)
+    }
+
+    /// The values of the `wanted` parameters in `units`.
+    pub(super) fn those(
+        matches: &ArgMatches,
+        wanted: impl Fn(Parameter) -> bool,
+        units: &Units,
+    ) -> Result<Self, clap::Error> {
         let mut values = Self(Box::new([None; Parameter::ALL.len()]));
         for (parameter, amount) in amounts(matches, wanted) {
             let flag = parameter.name().replace('_', "-");
@@ -70,14 +79,14 @@ impl Values {
     }
 }
 
-/// The numbers of the flags of the parameters in `wanted` groups.
+/// The numbers of the flags of the `wanted` parameters.
 pub(super) fn amounts(
     matches: &ArgMatches,
-    wanted: impl Fn(Group) -> bool,
+    wanted: impl Fn(Parameter) -> bool,
 ) -> impl Iterator<Item = (Parameter, Amount)> {
     let asked = Parameter::ALL
         .into_iter()
-        .filter(move |p| wanted(p.group()) && p.flag().is_some());
+        .filter(move |p| wanted(*p) && p.flag().is_some());
     asked.filter_map(|p| {
         let amount = match p {
             // What is no number is the expression of a formula.

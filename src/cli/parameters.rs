@@ -334,7 +334,11 @@ impl<A: Asks> ParameterArgs<A> {
             warn_of_idle_delay(setting.has_idle_delay());
         }
         if left_out != Some(Parameter::V0) {
-            warn_beyond_curve(setting.beyond_curve(&self.units()));
+            // Motions do not depend on the slope at v0 alone.
+            warn_beyond_curve(match A::LAW {
+                true => setting.beyond_curve(&self.units()),
+                false => setting.curve_remark(&self.units()),
+            });
         }
         Ok(setting)
     }

@@ -77,7 +77,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         }
     };
     warn_of_idle_delay(plan.spec.has_idle_delay());
-    warn_beyond_curve(plan.spec.beyond_curve());
+    warn_beyond_curve(plan.spec.curve_remark());
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
     let facts = Facts::of(&plan, threads)?;

@@ -12,6 +12,7 @@ use crate::sweep::relaxation_time;
 use crate::text::{Shown, finite};
 
 use super::asked::Asked;
+use super::margins::of_fit;
 use super::output::tell_dimensionless;
 
 /// Number of stable intervals printed for people; the JSON output has all, up to a hundred
@@ -86,6 +87,9 @@ pub(super) fn print(out: &mut impl Write, point: &Point, asked: &Asked) -> std::
         Point::Block(point) => {
             print_block(point, asked, &mut row)?;
             print_stability(stability, true, units, &mut row)?;
+            if let Some(fit) = &point.margins.fit {
+                row("fit", of_fit(fit, &point.margins, units))?;
+            }
             tell_dimensionless(out, units)
         }
         Point::System(point) => {

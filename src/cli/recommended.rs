@@ -11,6 +11,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::asked::Asked;
+use super::robust::MayBeOff;
 
 /// Controls by name.
 #[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
@@ -29,8 +30,8 @@ pub(super) struct Recommended {
     /// What is searched beside the delay.
     pub(super) searched: Quantity,
     pub(super) ranges: Ranges,
-    /// The largest relative error of gain, delay and μ′, if requested.
-    pub(super) spread: Option<f64>,
+    /// What may be off at the robust setting, if one is requested.
+    pub(super) may_be_off: Option<MayBeOff>,
     pub(super) found: BestSettings,
     /// None if it is not requested, or no setting stays stable.
     pub(super) robust: Option<RobustSetting>,

@@ -125,7 +125,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     warn_of_idle_delay(plan.spec.has_idle_delay());
-    warn_beyond_curve(plan.spec.beyond_curve());
+    warn_beyond_curve(plan.spec.curve_remark());
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));

@@ -18,7 +18,8 @@ const HEAD: &str = "# A setting by slipmap";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct SettingArgs {
-    /// Take everything from this file, as `slipmap best --save` writes it
+    /// Take everything from this file, as `slipmap fit --save` or `slipmap best --save` writes
+    /// it
     #[arg(long, value_name = "SETTING.toml", conflicts_with = "map")]
     setting: Option<PathBuf>,
 }
@@ -42,7 +43,7 @@ impl SettingArgs {
         let point = read_setting(path, of)?;
         warn_of_idle_delay(point.setting.has_idle_delay());
         if of == PointOf::Sliding {
-            warn_beyond_curve(point.setting.beyond_curve(&point.units));
+            warn_beyond_curve(point.setting.curve_remark(&point.units));
         }
         Ok(Some(point))
     }
@@ -74,8 +75,8 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
 /// Writes a setting, completely or not at all.
 pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
     let takers = match setting.law() {
-        Some(_) => "point, margins, vc, basin and simulate take it with --setting",
-        None => "point and margins take it with --setting",
+        Some(_) => "point, margins, best, vc, basin and simulate take it with --setting",
+        None => "point, margins and best take it with --setting",
     };
     let text = setting_text(setting, units, |_| true);
     let text = format!("{HEAD}; {takers}\n\n{text}");

@@ -106,7 +106,7 @@ impl Args for StartArgs {
 impl FromArgMatches for StartArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         Ok(Self {
-            state: amounts(matches, Self::of_start).collect(),
+            state: amounts(matches, |p| Self::of_start(p.group())).collect(),
             times: TimeArgs::from_arg_matches(matches)?,
         })
     }

@@ -104,14 +104,28 @@ pub(super) fn read_table(
     options: &CurveOptions,
     mu_s: Option<f64>,
 ) -> Result<Table, Failure> {
+    read_curve_as(path, options, |curve| curve.table_of_law(mu_s))
+}
+
+/// Reads the points of a friction curve from the columns of the file at `path`, and tells what was
+/// done with its rows.
+pub(super) fn read_curve(path: &Path, options: &CurveOptions) -> Result<Measured, Failure> {
+    read_curve_as(path, options, |curve| Ok(curve.clone()))
+}
+
+fn read_curve_as<T>(
+    path: &Path,
+    options: &CurveOptions,
+    take: impl FnOnce(&Measured) -> Result<T, SpecError>,
+) -> Result<T, Failure> {
     let (name, text) = text_of(path, "table", decoded)?;
     let failed = |error| Failure::in_file(error, &name, &text);
     let curve = Measured::read(&text, options).map_err(failed)?;
-    let table = curve.table_of_law(mu_s).map_err(failed)?;
+    let taken = take(&curve).map_err(failed)?;
     for remark in &curve.remarks {
         say::note(format_args!("{name}: {remark}"));
     }
-    Ok(table)
+    Ok(taken)
 }
 
 /// Reads the system in the file at `path`.

@@ -219,7 +219,7 @@ impl Asked {
                     answer,
                     command: point_command(setting)
                         .map(|command| format!("{command} --roots={ROOTS}")),
-                    warning: setting.beyond_curve(units),
+                    warning: setting.curve_remark(units),
                 })
             }
             Self::CriticalVelocity(point) => {

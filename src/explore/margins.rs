@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::stability::Stability;
 use crate::answers::margins::SettingMargins;
+use crate::answers::of_fit::{DRAWS, OfFit};
 use crate::linear::margins::{Limits, MarginSearch, Radius};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
@@ -43,8 +44,8 @@ pub struct Margins {
     /// there is no friction law.
     #[cfg_attr(feature = "serve", schema(required))]
     pub v0_margin: Option<Margin>,
-    /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
-    /// it does not have it, null where that is not known.
+    /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it, for the
+    /// friction that was given; 0 where it does not have it, null where that is not known.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub stability_radius: f64,
     /// That box; null where the setting does not have the decay rate.
@@ -55,6 +56,47 @@ pub struct Margins {
     pub undecided: Vec<&'static str>,
     /// The ends of the searches for margins without an upper end here.
     pub looked_up_to: LookedUpTo,
+    /// What the errors of a fitted friction law leave open; null where the law was not fitted.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub fit: Option<FitMargin>,
+}
+
+/// What the errors of a fitted friction law leave open of a setting.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct FitMargin {
+    /// The standard error of μ_K(v0).
+    pub mu_k_error: f64,
+    /// The standard error of μ_K′(v0).
+    pub mu_prime_error: f64,
+    /// How many friction laws were drawn, as the errors of the fit allow them.
+    pub draws: u32,
+    /// The share of them for which the setting has the decay rate.
+    pub share: f64,
+    /// For how many of them that is not known; they do not count in the share.
+    pub unknown: u32,
+    /// The largest spectral abscissa of all draws; null where none is known.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub worst_abscissa: f64,
+    /// μ_K of that draw.
+    pub worst_mu_k: f64,
+    /// μ_K′ of that draw.
+    pub worst_mu_prime: f64,
+}
+
+impl From<OfFit> for FitMargin {
+    fn from(of: OfFit) -> Self {
+        Self {
+            mu_k_error: of.sliding.mu_k_error,
+            mu_prime_error: of.sliding.mu_prime_error,
+            draws: DRAWS,
+            share: f64::from(of.decay) / f64::from(DRAWS),
+            unknown: of.unknown,
+            worst_abscissa: of.worst.abscissa,
+            worst_mu_k: of.worst.mu_k,
+            worst_mu_prime: of.worst.mu_prime,
+        }
+    }
 }
 
 /// The ends of searches in which nothing was lost; beyond them nothing is known.
@@ -147,6 +189,7 @@ impl Margins {
         let around = around.heeding(stop);
         let mut margins = Self {
             decays: around.stable(),
+            fit: OfFit::at(setting, decay, stop)?.map(Into::into),
             ..Self::lost(decay)
         };
         if margins.decays {
@@ -209,6 +252,7 @@ impl Margins {
             stability_box: None,
             undecided: Vec::new(),
             looked_up_to: LookedUpTo::NONE,
+            fit: None,
         }
     }
 

@@ -47,6 +47,14 @@ fn three_digits(value: f64) -> String {
     }
 }
 
+/// A number and its standard error, both to the third digit of the error.
+#[must_use]
+pub fn with_error(value: f64, error: f64) -> (String, String) {
+    let first = error.abs().log10().floor();
+    let places = (2.0 - first).clamp(0.0, 12.0) as usize;
+    (format!("{value:.places$}"), format!("{error:.places$}"))
+}
+
 /// Bytes with a decimal prefix: "12.3 MB".
 #[must_use]
 pub fn bytes(n: u64) -> String {

@@ -95,7 +95,7 @@ impl GivenTable {
     }
 
     /// The place and name of a given column; none without columns.
-    pub(super) fn any(&self) -> Option<(&Range<usize>, &'static str)> {
+    fn any(&self) -> Option<(&Range<usize>, &'static str)> {
         let pairs = self.pairs.as_ref().map(|place| (place, PAIRS));
         let speeds = self
             .speeds
@@ -103,6 +103,15 @@ impl GivenTable {
             .map(|c| (&c.0, TableColumn::Speeds.name()));
         let mu_k = self.mu_k.as_ref().map(|c| (&c.0, TableColumn::MuK.name()));
         pairs.or(speeds).or(mu_k)
+    }
+
+    /// An error if points are given although the law is no table.
+    pub(super) fn check_none(&self, law: &str) -> Result<(), SpecError> {
+        let Some((place, column)) = self.any() else {
+            return Ok(());
+        };
+        let message = format!("{column} has no meaning with the {law} law");
+        Err(SpecError::at(place.clone(), message).help("points are for law = \"table\""))
     }
 
     /// The place of the first value of μ_K.

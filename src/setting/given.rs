@@ -2,9 +2,12 @@
 //! every key.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
 use super::amount::units_of;
+use super::fit_keys;
+use super::fitted::{self, Fitted};
 use super::formula_keys::{FormulaKeys, given_twice};
 use super::friction_table::GivenTable;
 use super::given_error::GivenError;
@@ -28,6 +31,7 @@ pub(super) struct GivenParameters {
     formula: FormulaKeys,
     law: Option<(LawKind, Range<usize>)>,
     table: GivenTable,
+    fitted: Option<Arc<Fitted>>,
     places: Vec<(Parameter, Range<usize>)>,
 }
 
@@ -206,7 +210,7 @@ impl GivenParameters {
             .chain(of_laws.map(Parameter::name))
             .chain(table)
             .collect();
-        let mut law = None;
+        let (mut law, mut fit) = (None, None);
         for entry in friction.table()? {
             if self.formula.take(&entry, &self.units)? {
                 continue;
@@ -214,6 +218,7 @@ impl GivenParameters {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
+                None if entry.key == fitted::FIT => fit = Some(entry),
                 None if self.table.read(&entry, &self.units)? => {}
                 None => {
                     let of_formula = self.formula.unknown_key(&entry);
@@ -221,11 +226,12 @@ impl GivenParameters {
                 }
             }
         }
-        let Some(law) = law else {
-            let place = friction.key_span.clone();
-            return Err(SpecError::at(place, "[friction] needs a law"));
-        };
-        self.law = Some((self.read_law(&law)?, law.span.clone()));
+        let missing = || SpecError::at(friction.key_span.clone(), "[friction] needs a law");
+        let law = law.ok_or_else(missing)?;
+        let kind = self.read_law(&law)?;
+        let fit = fit.map(|fit| fit_keys::read(&fit, &kind)).transpose()?;
+        self.fitted = fit.map(Arc::new);
+        self.law = Some((kind, law.span.clone()));
         Ok(())
     }
 
@@ -242,12 +248,7 @@ impl GivenParameters {
             help: error.help,
             ..entry.error(error.message)
         })?;
-        if let Some((place, column)) = self.table.any() {
-            let message = format!("{column} has no meaning with the {name} law");
-            return Err(
-                SpecError::at(place.clone(), message).help("points are for law = \"table\"")
-            );
-        }
+        self.table.check_none(name)?;
         Ok(law)
     }
 
@@ -345,6 +346,7 @@ impl GivenParameters {
             setting.set(*parameter, *value);
         }
         self.formula.fill(&mut setting);
+        setting.fitted.clone_from(&self.fitted);
         setting
     }
 

@@ -14,7 +14,7 @@ pub(crate) struct Key {
     pub meaning: &'static str,
 }
 
-const fn key(
+pub(super) const fn key(
     name: &'static str,
     takes: &'static str,
     default: &'static str,
@@ -28,7 +28,7 @@ const fn key(
     }
 }
 
-const fn needed(name: &'static str, takes: &'static str, meaning: &'static str) -> Key {
+pub(super) const fn needed(name: &'static str, takes: &'static str, meaning: &'static str) -> Key {
     Key {
         name,
         takes,
@@ -183,7 +183,7 @@ pub(crate) const RANGE: [Key; 4] = [
 ];
 
 /// The keys of `[friction]` besides the parameters of the laws.
-pub(crate) const FRICTION_TABLE: [Key; 5] = [
+pub(crate) const FRICTION_TABLE: [Key; 6] = [
     needed("law", "the name of a law", "the law"),
     key(
         "speeds",
@@ -210,6 +210,13 @@ pub(crate) const FRICTION_TABLE: [Key; 5] = [
         "a table of units, such as { sigma = \"s/m\" }",
         "numbers without unit",
         "with law = \"formula\": the units of its own parameters, made of those of the file",
+    ),
+    key(
+        "fit",
+        "a table",
+        "none: the law is as given",
+        "what `slipmap fit` found of the errors of the law; `point`, `margins` and `best` tell \
+         what follows from them",
     ),
 ];
 
@@ -431,6 +438,7 @@ mod tests {
             &SWEEP[..],
             &RANGE,
             &FRICTION_TABLE,
+            &crate::setting::fit_keys::FIT,
             &CURVE,
             &SIMULATION,
             &BASIN,

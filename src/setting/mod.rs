@@ -5,13 +5,16 @@
 //! - `axis`: axis values, each from its index alone
 //! - `basin`: the starts over which a share is taken: the table `[basin]`, default ranges
 //! - `best_plane`: the planes of a sweep in which the best setting is searched for
-//! - `beyond_curve`: remarks on velocities beyond the points of a measured friction law
 //! - `case_file`: the case file: one motion, read and checked once
 //! - `catalogue`: enumerations with a table of facts, one row for each value
 //! - `checked`: a setting of named numbers, checked as a file is
 //! - `command`: the command line for a setting
+//! - `curve_remark`: remarks on velocities at which a measured friction law says little
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
+//! - `fit_keys`: the keys of what a fit says
+//! - `fitted`: standard errors and correlations of a fitted law
+//! - `fitted_sliding`: what they leave open of the slope where the block slides
 //! - `formula`: a friction law as an expression in the speed
 //! - `formula_keys`: the keys of `[friction]` that belong to a formula
 //! - `friction_table`: the points of a table as numbers in a sweep or case file
@@ -27,6 +30,7 @@
 //! - `measured`: a measured friction curve from a text of columns
 //! - `needs`: what fields need of a sweep: a row for each need
 //! - `no_answer`: why a setting has no linear model, or no answer
+//! - `noisy_slope`: slopes of a measured curve that its own points contradict
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
 //! - `point_file`: a point of parameter space as text
@@ -52,13 +56,16 @@ pub(crate) mod amount;
 pub mod axis;
 pub mod basin;
 pub(crate) mod best_plane;
-mod beyond_curve;
 pub mod case_file;
 mod catalogue;
 mod checked;
 pub(crate) mod command;
+mod curve_remark;
 mod expression;
 pub mod field;
+pub(crate) mod fit_keys;
+pub mod fitted;
+pub mod fitted_sliding;
 pub mod formula;
 pub(crate) mod formula_keys;
 mod friction_table;
@@ -73,6 +80,7 @@ pub mod map_names;
 pub mod measured;
 pub(crate) mod needs;
 pub mod no_answer;
+mod noisy_slope;
 mod own_system;
 pub mod parameter;
 pub mod point_file;

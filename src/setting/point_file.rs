@@ -31,6 +31,8 @@ use crate::text::toml_reader::{SpecError, entries, parse};
 pub enum PointOf {
     /// Sliding: all parameters on which its stability depends.
     Sliding,
+    /// Sliding at a delay that is searched for: one in the file is not needed.
+    SlidingAtAnyDelay,
     /// Its critical velocity: a friction law, no v0, and a delay only if control acts.
     CriticalVelocity,
     /// The critical velocity of a setting, whose v0 is ignored if it has one.
@@ -44,7 +46,7 @@ impl PointOf {
     const fn takes(self, parameter: Parameter) -> bool {
         match (self, parameter.group()) {
             (_, Group::Limit | Group::Start) => false,
-            (Self::Sliding, _) => true,
+            (Self::Sliding | Self::SlidingAtAnyDelay, _) => true,
             (Self::CriticalVelocity, Group::Pull) => false,
             (_, group) => !matches!(group, Group::Sliding),
         }
@@ -85,6 +87,7 @@ impl PointSpec {
         let mut setting = given.setting();
         match of {
             PointOf::Sliding => setting = given.sliding(&[])?,
+            PointOf::SlidingAtAnyDelay => setting = given.sliding(&[Parameter::Tau])?,
             PointOf::CriticalVelocity => check_critical(&given, &mut setting)?,
             PointOf::CriticalVelocityOfSetting => check_critical_of(&given, &mut setting)?,
             PointOf::Law => {

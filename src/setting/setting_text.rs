@@ -1,6 +1,10 @@
 //! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`. Reading them gives the same
 //! setting.
 
+use super::fitted::{
+    BETWEEN_LAWS, CORRELATIONS, COVERAGE_FACTOR, FIT, Fitted, FittedNumber, PARAMETERS,
+    STANDARD_ERRORS,
+};
 use super::formula_keys::UNITS;
 use super::law_kind::LawKind;
 use super::parameter::{Group, Parameter};
@@ -64,6 +68,7 @@ pub(crate) fn setting_text(
                 text += &format!("{} = [{}]\n", column.name(), values.join(", "));
             }
         }
+        text += &setting.fitted().map_or_else(String::new, fit_text);
     }
     text += &units_text(units);
     text.trim_start().to_owned()
@@ -79,6 +84,30 @@ fn own_units(setting: &Setting) -> String {
         true => String::new(),
         false => format!("{UNITS} = {{ {} }}\n", units.join(", ")),
     }
+}
+
+/// What a fit says of the law, as the table `[friction.fit]`.
+fn fit_text(of: &Fitted) -> String {
+    let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+    let numbers = |of: &[f64]| list(of.iter().map(|&value| number(value)).collect());
+    let names = of.errors().filter_map(|(of, _)| match of {
+        FittedNumber::Parameter(parameter) => Some(quoted(parameter.name())),
+        FittedNumber::Point(_) => None,
+    });
+    let names: Vec<String> = names.collect();
+    let errors: Vec<f64> = of.errors().map(|(_, error)| error).collect();
+    let rows = of.correlations().iter().map(|row| numbers(row)).collect();
+    let mut text = format!("\n[friction.{FIT}]\n");
+    if !names.is_empty() {
+        text += &format!("{PARAMETERS} = {}\n", list(names));
+    }
+    text += &format!("{STANDARD_ERRORS} = {}\n", numbers(&errors));
+    text += &format!("{CORRELATIONS} = {}\n", list(rows));
+    text += &format!("{COVERAGE_FACTOR} = {}\n", number(of.coverage_factor()));
+    if of.between_laws() > 0.0 {
+        text += &format!("{BETWEEN_LAWS} = {}\n", number(of.between_laws()));
+    }
+    text
 }
 
 fn units_text(units: &Units) -> String {

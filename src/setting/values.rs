@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::fitted::Fitted;
 use super::formula::GivenFormula;
 use super::law_kind::{LawKind, OF_VELOCITY};
 use super::no_answer::NoAnswer;
@@ -26,6 +27,8 @@ use crate::model::{Dashpots, FrictionLaw, ModelError, Oscillator, RateAndState, 
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],
     subject: Subject,
+    /// What a fit says of the friction law.
+    pub(super) fitted: Option<Arc<Fitted>>,
 }
 
 /// What a setting describes.
@@ -46,6 +49,7 @@ impl Setting {
         Self {
             values,
             subject: Subject::Block(law),
+            fitted: None,
         }
     }
 
@@ -144,6 +148,13 @@ impl Setting {
         match &self.subject {
             Subject::Block(law) => law.as_ref(),
             Subject::File(_) => None,
+        }
+    }
+
+    /// Puts another friction law in the place of that of the block.
+    pub(crate) fn take_law(&mut self, law: Option<LawKind>) {
+        if let Subject::Block(old) = &mut self.subject {
+            *old = law;
         }
     }
 

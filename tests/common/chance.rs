@@ -35,6 +35,12 @@ impl Chance {
         self.between(from.ln(), to.ln()).exp()
     }
 
+    /// A number of the standard normal distribution, by the method of Box and Muller.
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (radius, angle) = (1.0 - self.unit(), std::f64::consts::TAU * self.unit());
+        (-2.0 * radius.ln()).sqrt() * angle.cos()
+    }
+
     /// An index into `n` things.
     pub(crate) fn of(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize

@@ -4,8 +4,8 @@ mod uses;
 
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 15] = [
-    "text", "model", "linear", "slip", "critical", "setting", "answers", "sweep", "explore",
+const LAYERS: [&str; 16] = [
+    "text", "model", "linear", "slip", "critical", "setting", "fit", "answers", "sweep", "explore",
     "store", "maps", "report", "letter", "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
@@ -190,7 +190,10 @@ fn the_ground_layers_are_pure() {
 fn libraries_stay_in_their_rooms() {
     for (library, room) in [
         ("rayon", "src/sweep/engine.rs"),
-        ("sobol_burley", "src/answers/basin.rs"),
+        ("sobol_burley", "src/answers/sobol.rs"),
+        ("levenberg_marquardt", "src/fit/least_squares.rs"),
+        ("nalgebra", "src/fit"),
+        ("statrs", "src/fit/choice.rs"),
         ("hdf5", "src/store"),
         ("wide", "src/linear/crossing"),
         ("faer", "src/linear/collocation.rs"),

@@ -215,7 +215,7 @@ fn robust_settings_keep_what_they_promise_by_a_walk() {
         let problem = Problem::by_chance(&mut chance, i);
         let (setting, ranges) = problem.asked();
         let stop = Stop::default();
-        let found = robust_setting(&setting, problem.gain, &ranges, problem.spread, &stop);
+        let found = robust_setting(&setting, problem.gain, &ranges, [problem.spread; 3], &stop);
         let found = found.unwrap().1;
         settings += check_grid(&problem, &ranges, found.as_ref());
         if let Some(found) = found {

@@ -19,6 +19,7 @@ mod cli;
 mod curves;
 mod damaged;
 mod export;
+mod fits;
 mod flips;
 mod formulas;
 mod manners;

@@ -109,7 +109,16 @@ fn velocities_that_were_not_measured_are_warned_of() {
             "{said}{warning}"
         );
     }
-    assert!(serving.ask("point", &slow).json()["warning"].is_null());
+    // Between the points the slope is doubted where they are far apart.
+    std::fs::write(folder.path().join("slow.toml"), &slow).unwrap();
+    let told = serving.ask("point", &slow).json()["warning"].clone();
+    let said = err(&folder.run(&["point", "--setting", "slow.toml"]));
+    let told = told.as_str().unwrap();
+    assert!(
+        told.contains("the slope of the measured curve at v0"),
+        "{told}"
+    );
+    assert!(said.contains(&format!("warning: {told}\n")), "{said}{told}");
 }
 
 #[test]

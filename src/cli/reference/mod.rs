@@ -14,6 +14,7 @@ use std::fmt::Write;
 
 use crate::linear::status::FLAGS;
 use crate::setting::field::Storage;
+use crate::setting::fit_keys;
 use crate::setting::keys::{self, Key};
 use crate::setting::law_kind::{LawKind, NamedLaw};
 use crate::setting::units::Units;
@@ -250,6 +251,12 @@ fn sweep_files(page: &mut String) {
         "The keys of `table` in `[friction]`, where it is a table itself:",
     );
     keys_of(page, &keys::CURVE);
+    heading(page, 2, "`[friction.fit]`");
+    paragraph(
+        page,
+        "What `slipmap fit --save` writes of a law beside its parameters:",
+    );
+    keys_of(page, &fit_keys::FIT);
     heading(page, 2, "`[simulation]`");
     keys_of(page, &keys::SIMULATION);
     heading(page, 2, "`[basin]`");

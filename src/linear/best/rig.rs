@@ -4,7 +4,7 @@ use super::general::{MOST_STEPS, abscissa_of};
 use super::letter::Letter;
 use super::search::Place;
 use crate::linear::general::RootCounter;
-use crate::linear::margins::{AsCase, Beyond, Case, Changes, Radius, Setting, radius_up_to};
+use crate::linear::margins::{AsCase, Beyond, Case, Changes, Radius, Setting, radius_within};
 use crate::linear::spectrum::RootFinder;
 use crate::model::Groups;
 use crate::model::stop::Stop;
@@ -46,29 +46,25 @@ impl Rig {
         bound: f64,
     ) -> f64 {
         let (groups, tau) = self.changed(place, changes);
-        self.abscissa_of(finder, groups, tau, bound)
+        abscissa_at(self.beyond, finder, (groups, tau), bound)
     }
 
     /// The spectral abscissa at a place; infinite where it is not known.
     pub(super) fn abscissa(&self, finder: &mut RootFinder, place: Place) -> f64 {
         let groups = self.letter.groups(place.gain);
-        self.abscissa_of(finder, groups, place.tau, f64::INFINITY)
+        abscissa_at(self.beyond, finder, (groups, place.tau), f64::INFINITY)
     }
 
-    fn abscissa_of(&self, finder: &mut RootFinder, groups: Groups, tau: f64, bound: f64) -> f64 {
-        if let Some(beyond) = self.beyond {
-            let system = beyond.of_groups(groups).system();
-            let counter = RootCounter::new(&system).allowing(MOST_STEPS);
-            return abscissa_of(&counter, finder, tau, bound);
-        }
-        let roots = finder.rightmost(groups, tau, 1, f64::NEG_INFINITY);
-        let first = roots.ok().and_then(|roots| roots.first());
-        first.map_or(f64::INFINITY, |root| root.lambda.re)
-    }
-
-    /// The stability radius at a place for the required decay rate `decay` ≥ 0, or `most` < 1 where
-    /// it is larger. Once `stop` is set it is told soon, and proves little.
-    pub(super) fn radius(&self, place: Place, decay: f64, most: f64, stop: &Stop) -> Radius {
+    /// The stability radius at a place for the required decay rate `decay` ≥ 0, as a part of the
+    /// relative changes `extents`; at most 1. Once `stop` is set it is told soon, and proves
+    /// little.
+    pub(super) fn radius(
+        &self,
+        place: Place,
+        decay: f64,
+        extents: [f64; 3],
+        stop: &Stop,
+    ) -> Radius {
         let setting = Setting {
             groups: self.letter.groups(place.gain),
             tau: place.tau,
@@ -78,10 +74,28 @@ impl Rig {
         if let Some(beyond) = self.beyond {
             let mut case = Case::beyond(setting, beyond);
             case.heed(stop);
-            return radius_up_to(&case, most, still);
+            return radius_within(&case, extents, still);
         }
         let mut case = setting.case();
         case.heed(stop);
-        radius_up_to(&case, most, still)
+        radius_within(&case, extents, still)
     }
+}
+
+/// The spectral abscissa of groups and a delay, with what the feedback has beyond the letter's own;
+/// infinite where it is not known. Where it is above `bound`, anything above that.
+pub(crate) fn abscissa_at(
+    beyond: Option<Beyond>,
+    finder: &mut RootFinder,
+    (groups, tau): (Groups, f64),
+    bound: f64,
+) -> f64 {
+    if let Some(beyond) = beyond {
+        let system = beyond.of_groups(groups).system();
+        let counter = RootCounter::new(&system).allowing(MOST_STEPS);
+        return abscissa_of(&counter, finder, tau, bound);
+    }
+    let roots = finder.rightmost(groups, tau, 1, f64::NEG_INFINITY);
+    let first = roots.ok().and_then(|roots| roots.first());
+    first.map_or(f64::INFINITY, |root| root.lambda.re)
 }

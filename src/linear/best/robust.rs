@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! minimise over gain and delay   W = max abscissa(k = 1 + δ₁, τ (1 + δ₂), b (1 + δ₃)),
-//!                                |δ_i| ≤ spread                                            (1)
+//!                                |δ_i| ≤ spread_i                                          (1)
 //! ```
 //!
 //! k is the factor of both gains. The maximum is taken over corners and middles of the box, and
@@ -48,7 +48,7 @@ pub struct Robust {
 /// The abscissa over a box around a place.
 struct Worst<'s> {
     search: &'s Search<Rig>,
-    spread: f64,
+    spread: Changes,
     /// Where the abscissa is looked at; the place that was worst last comes first.
     places: Vec<Looked>,
     stop: &'s Stop,
@@ -71,8 +71,10 @@ impl Looked {
 }
 
 impl<'s> Worst<'s> {
-    fn new(search: &'s Search<Rig>, spread: f64, stop: &'s Stop) -> Self {
+    fn new(search: &'s Search<Rig>, spread: Changes, stop: &'s Stop) -> Self {
         let places = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(|n| f64::from(n) - 1.0));
+        // What cannot be off is looked at in the middle alone.
+        let places = places.filter(|at| (0..3).all(|i| spread[i] != 0.0 || at[i] == 0.0));
         Self {
             search,
             spread,
@@ -89,7 +91,7 @@ impl<'s> Worst<'s> {
         let (rig, spread) = (&self.search.family, self.spread);
         let mut worst = (f64::NEG_INFINITY, 0);
         for (i, Looked { changes, finder }) in self.places.iter_mut().enumerate() {
-            let changes = changes.map(|d| spread * d);
+            let changes = scaled(changes, spread);
             let abscissa = rig.changed_abscissa(finder, (place, changes), bound);
             if abscissa > worst.0 {
                 worst = (abscissa, i);
@@ -100,7 +102,7 @@ impl<'s> Worst<'s> {
         }
         let changes = self.places[worst.1].changes;
         self.places[..=worst.1].rotate_right(1);
-        (worst.0, changes.map(|d| spread * d))
+        (worst.0, scaled(&changes, spread))
     }
 
     /// Whether the search is to end: nobody waits for it any more, or its work has come to its
@@ -124,21 +126,31 @@ impl<'s> Worst<'s> {
             let line = worst * (1.0 - slack);
             let rig = &self.search.family;
             let radius = rig.radius(place, -line, self.spread, self.stop);
-            if radius.proved >= self.spread {
+            if radius.proved >= 1.0 {
                 return Ok(Some(line));
             }
             if let Some(changes) = radius.unstable {
-                return Err(changes.map(|d| d / self.spread));
+                return Err(changes);
             }
         }
         Ok(None)
     }
 }
 
+/// Parts of a spread as relative changes.
+fn scaled(parts: &Changes, spread: Changes) -> Changes {
+    std::array::from_fn(|i| spread[i] * parts[i])
+}
+
 /// The largest abscissa over the box of changes around a setting, and whether that is proved;
 /// infinite where it is not known. Once `stop` is set it means nothing.
 #[must_use]
-pub fn worst_around(search: &Search<Rig>, place: Place, spread: f64, stop: &Stop) -> (f64, bool) {
+pub fn worst_around(
+    search: &Search<Rig>,
+    place: Place,
+    spread: Changes,
+    stop: &Stop,
+) -> (f64, bool) {
     let mut worst = Worst::new(search, spread, stop);
     for _ in 0..MOST_PLACES {
         match worst.proved(place) {
@@ -151,10 +163,11 @@ pub fn worst_around(search: &Search<Rig>, place: Place, spread: f64, stop: &Stop
 }
 
 /// The most robust setting of the box of `search`, of those in the stable regions that `best` lists
-/// for it; none where no setting stays stable. 0 ≤ `spread` < 1. Once `stop` is set, the answer
-/// comes soon but is meaningless.
+/// for it; none where no setting stays stable. `spread` has the largest relative changes of gain,
+/// delay and slope, those of gain and delay less than 1. Once `stop` is set, the answer comes soon
+/// but is meaningless.
 #[must_use]
-pub fn robust(search: &Search<Rig>, best: &Best, spread: f64, stop: &Stop) -> Option<Robust> {
+pub fn robust(search: &Search<Rig>, best: &Best, spread: Changes, stop: &Stop) -> Option<Robust> {
     let mut worst = Worst::new(search, spread, stop);
     // No setting of a region is better than its best one.
     let mut regions: Vec<_> = best.regions.iter().collect();

@@ -271,21 +271,26 @@ impl MarginSearch {
     }
 }
 
+/// Relative changes of gain, delay and third parameter up to their own size.
+const WHOLE: [f64; 3] = [1.0; 3];
+
 /// The stability radius in gain, delay and slope.
 #[must_use]
 pub fn radius(of: &impl AsCase) -> Radius {
-    radius_up_to(of, 1.0, 0.0)
+    radius_within(of, WHOLE, 0.0)
 }
 
-/// The stability radius in gain, delay and slope, or `most` < 1 where it is larger. `still` is
-/// d + g, what dashpots add to b: it does not change with the slope of friction.
+/// The stability radius in gain, delay and slope, as a part of the `extents` of their relative
+/// changes; at most 1. `still` is d + g, what dashpots add to b: it does not change with the slope
+/// of friction.
 #[must_use]
-pub fn radius_up_to(of: &impl AsCase, most: f64, still: f64) -> Radius {
+pub fn radius_within(of: &impl AsCase, extents: [f64; 3], still: f64) -> Radius {
     let around = Surroundings {
         case: of.case(),
         third: Third::Slope(still),
+        extents,
     };
-    around.radius(most)
+    around.radius()
 }
 
 /// The stability radius in gain, delay and sliding velocity; the setting is the one at `v0`.
@@ -294,6 +299,7 @@ pub fn radius_with_law(of: &impl AsCase, law: &SlidingLaw<'_>, v0: f64) -> Radiu
     let around = Surroundings {
         case: of.case(),
         third: Third::Velocity(v0, *law),
+        extents: WHOLE,
     };
-    around.radius(1.0)
+    around.radius()
 }

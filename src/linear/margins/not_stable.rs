@@ -49,11 +49,13 @@ impl<L: OnLine> Surroundings<'_, L> {
         let (groups, tau) = self.changed([gain, 0.0, third]);
         let (interval, resolved) = self.case.on_line.stable_interval_at(groups, tau);
         *work += WORK_OF_DIGITS * resolved;
+        let extent = self.extents[1];
         let change = match interval {
             None => 0.0,
-            Some(_) if tau == 0.0 => return None,
+            Some(_) if tau == 0.0 || extent == 0.0 => return None,
             Some(found) => {
-                let [below, above] = [found.from, found.to].map(|end| end / tau - 1.0);
+                let ends = [found.from, found.to];
+                let [below, above] = ends.map(|end| (end / tau - 1.0) / extent);
                 if -below < above && found.from > 0.0 {
                     below
                 } else {

@@ -2,9 +2,12 @@
 //! velocity) in which every setting is stable.
 //!
 //! ```text
-//! gains k = 1 + δ₁,  delay τ (1 + δ₂),  slope b (1 + δ₃) or velocity v0 (1 + δ₃)            (1)
+//! gains k = 1 + e₁δ₁,  delay τ (1 + e₂δ₂),  slope b (1 + e₃δ₃) or velocity v0 (1 + e₃δ₃)    (1)
 //! radius = inf max |δ_i|  over all δ for which D(−σ + iω) = 0 at some ω ≥ 0                 (2)
 //! ```
+//!
+//! The extents e_i are 1, or those of a box that is no cube; where one is 0, that parameter is
+//! fixed.
 //!
 //! The centre is stable and roots move continuously, so inside (2) no root comes to the line.
 //! Boxes of ω, δ₁ and δ₃ are taken by their least max |δ_i|, δ₂ among them by the delays at which
@@ -29,7 +32,8 @@ const TIGHT: f64 = 0.995;
 /// A radius, proved, and what is not stable just beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Radius {
-    /// Every setting whose parameters differ by less than this part of them is stable. At most 1.
+    /// Every setting whose parameters differ by less than this part of their extents is stable. At
+    /// most 1.
     pub proved: f64,
     /// The changes to a setting that is not stable, or one of whose roots is on the line within
     /// rounding: at most one per cent farther away, unless the search was given up. None where
@@ -41,6 +45,8 @@ pub struct Radius {
     pub tight: bool,
 }
 
+/// The largest radius that is looked for.
+const LARGEST: f64 = 1.0;
 /// A side of a box matters by its own width up to so many times what D's zeros move along it.
 const MATTERS: f64 = 8.0;
 /// Boxes end at this part of a change of the delay at which roots accumulate at the line.
@@ -87,19 +93,18 @@ impl Ord for Part {
 }
 
 impl<L: OnLine> Surroundings<'_, L> {
-    /// The stability radius of a setting that is stable, at most `limit`.
-    pub(super) fn radius(&self, limit: f64) -> Radius {
+    /// The stability radius of a setting that is stable.
+    pub(super) fn radius(&self) -> Radius {
         let fixed = self.fixed();
-        let last = self.accumulation().filter(|last| *last <= limit);
+        let of_delay = self.extents[1];
+        let last = self.accumulation().map(|change| change / of_delay);
+        let last = last.filter(|last| *last <= LARGEST);
         let mut unstable = self
-            .nearest_along_directions(fixed, last.unwrap_or(limit))
+            .nearest_along_directions(fixed, last.unwrap_or(LARGEST))
             .or_else(|| last.map(|change| [0.0, change, 0.0]));
-        let mut bound = unstable.map_or(limit, largest);
+        let mut bound = unstable.map_or(LARGEST, largest);
         // At the delay where roots accumulate at the line none of them is the highest.
-        let mut most = match last {
-            Some(last) => bound.min(BEFORE_ACCUMULATION * last),
-            None => bound,
-        };
+        let mut most = last.map_or(bound, |last| bound.min(BEFORE_ACCUMULATION * last));
         // Nor is one where friction is infinitely steep, at rest.
         if self.highest(most).is_infinite() {
             most *= BEFORE_REST;
@@ -158,7 +163,8 @@ impl<L: OnLine> Surroundings<'_, L> {
     fn accumulation(&self) -> Option<f64> {
         let Setting { groups, tau, decay } = self.case.setting;
         let remembers = self.case.channel().memory != 0.0;
-        let acts = decay > 0.0 && tau > 0.0 && remembers && !groups.uncontrolled();
+        let varies = tau > 0.0 && self.extents[1] > 0.0;
+        let acts = decay > 0.0 && varies && remembers && !groups.uncontrolled();
         acts.then(|| self.case.last_delay() / tau - 1.0)
     }
 
@@ -175,7 +181,7 @@ impl<L: OnLine> Surroundings<'_, L> {
             tau => point.crossing_delays(tau),
         };
         if matches!(known, Delays::Unknown) {
-            let shortest = tau * (1.0 + sides[DELAY].0);
+            let shortest = tau * (1.0 + self.extents[1] * sides[DELAY].0);
             let least = exp(self.case.setting.decay * shortest) * (1.0 - 1e-12);
             if !point.reaches(least) {
                 return None;
@@ -185,16 +191,25 @@ impl<L: OnLine> Surroundings<'_, L> {
         let (mut distance, mut candidate) = (at_least.max(least(&sides)), None);
         let mut weights = over.weights;
         if let Delays::Near(near) = known {
-            distance = distance.max(near.distance / tau * (1.0 - 1e-12));
+            let unit = match self.extents[1] {
+                // The delay is fixed, and is none at which a root may be on the line.
+                0.0 if near.distance > 0.0 => return None,
+                0.0 => tau,
+                extent => extent * tau,
+            };
+            distance = distance.max(near.distance / unit * (1.0 - 1e-12));
             let [omega, gain, delay, third, _] = sides;
             let mut at = [omega, gain, delay, third].map(|(from, to)| 0.5 * (from + to));
-            at[DELAY] = near.tau / tau - 1.0;
+            at[DELAY] = match self.extents[1] {
+                0.0 => 0.0,
+                extent => (near.tau / tau - 1.0) / extent,
+            };
             candidate = Some(at);
             // A side that is halved is itself nearer or farther.
             weights = std::array::from_fn(|i| match i {
-                0 | JUMP => near.weights[i] / tau,
+                0 | JUMP => near.weights[i] / unit,
                 // Unless hardly anything depends on it.
-                _ => near.weights[i] / tau + half[i].min(MATTERS * near.weights[i] / tau),
+                _ => near.weights[i] / unit + half[i].min(MATTERS * near.weights[i] / unit),
             });
         }
         let wide = |i: &usize| *i != DELAY && half[*i] > 0.0;

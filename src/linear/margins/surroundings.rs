@@ -6,7 +6,8 @@ use super::equations::{OnLine, UpTo};
 use super::setting::{Case, Setting};
 use crate::model::Groups;
 
-/// The relative changes of gain, delay and third parameter: 0 where one stays as it is.
+/// The relative changes of gain, delay and third parameter, in parts of the largest that each may
+/// have: 0 where one stays as it is.
 pub type Changes = [f64; 3];
 
 /// What the third parameter is.
@@ -22,6 +23,9 @@ pub(super) enum Third<'a> {
 pub(super) struct Surroundings<'a, L> {
     pub case: Case<L>,
     pub third: Third<'a>,
+    /// The largest relative changes of gain, delay and third parameter, of which the radius is a
+    /// part.
+    pub extents: [f64; 3],
 }
 
 /// Number of the delay among ω, gain, delay and third parameter. Boxes have all delays.
@@ -46,7 +50,8 @@ pub(super) fn largest(changes: Changes) -> f64 {
 
 impl<L: OnLine> Surroundings<'_, L> {
     /// The groups and the delay of a changed setting.
-    pub(super) fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
+    pub(super) fn changed(&self, changes: Changes) -> (Groups, f64) {
+        let [gain, delay, third] = std::array::from_fn(|i| self.extents[i] * changes[i]);
         let Setting { groups, tau, .. } = self.case.setting;
         let Groups { b, a_n, .. } = match self.third {
             Third::Slope(still) => Groups {
@@ -73,17 +78,19 @@ impl<L: OnLine> Surroundings<'_, L> {
             Third::Slope(still) => groups.b == still,
             Third::Velocity(v0, _) => v0 == 0.0,
         };
-        [groups.uncontrolled(), tau == 0.0, third]
+        let still = [groups.uncontrolled(), tau == 0.0, third];
+        std::array::from_fn(|i| still[i] || self.extents[i] == 0.0)
     }
 
     /// What D depends on, over a box; none where that is empty.
     pub(super) fn point(&self, [omega, gain, delay, third, slope]: Sides) -> Option<Point<ALL>> {
         let Setting { groups, tau, decay } = self.case.setting;
-        let from_one = |(a, b): (f64, f64)| (1.0 + a, 1.0 + b);
-        let factor = Affine::between(from_one(gain), 1);
+        let factors = |(a, b): (f64, f64), extent: f64| (1.0 + extent * a, 1.0 + extent * b);
+        let [of_gain, of_delay, of_third] = self.extents;
+        let factor = Affine::between(factors(gain, of_gain), 1);
         let (b, a_n) = match self.third {
             Third::Slope(still) => {
-                let slope = Affine::between(from_one(third), 3).scaled(groups.b - still);
+                let slope = Affine::between(factors(third, of_third), 3).scaled(groups.b - still);
                 let b = match still {
                     0.0 => slope,
                     still => slope + Affine::constant(still.into()),
@@ -91,7 +98,7 @@ impl<L: OnLine> Surroundings<'_, L> {
                 (b, Affine::constant(groups.a_n.into()))
             }
             Third::Velocity(v0, law) => {
-                let (low, high) = from_one(third);
+                let (low, high) = factors(third, of_third);
                 let slope = Slope {
                     variable: JUMP,
                     between: slope,
@@ -103,7 +110,7 @@ impl<L: OnLine> Surroundings<'_, L> {
         Some(Point {
             lambda: Point::on_line(decay, omega),
             factor,
-            tau: Affine::between(from_one(delay), 2).scaled(tau),
+            tau: Affine::between(factors(delay, of_delay), 2).scaled(tau),
             b,
             a_n,
             a_v: groups.a_v,
@@ -118,6 +125,7 @@ impl<L: OnLine> Surroundings<'_, L> {
         let Third::Velocity(v0, law) = self.third else {
             return (0.0, 0.0);
         };
+        let most = self.extents[2] * most;
         let (low, high) = law.law.slopes_between(v0 * (1.0 - most), v0 * (1.0 + most));
         (low.max(ANY_SLOPE.0), high.min(ANY_SLOPE.1))
     }
@@ -125,18 +133,19 @@ impl<L: OnLine> Surroundings<'_, L> {
     /// The ω beyond which no root is on the line while all changes are at most `most`.
     pub(super) fn highest(&self, most: f64) -> f64 {
         let Setting { groups, tau, .. } = self.case.setting;
+        let [of_gain, _, of_third] = self.extents.map(|extent| extent * most);
         let (b, a_n) = match self.third {
             Third::Slope(still) => {
-                let reach = (groups.b - still).abs() * (1.0 + most) + still;
+                let reach = (groups.b - still).abs() * (1.0 + of_third) + still;
                 (reach, groups.a_n)
             }
-            Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
+            Third::Velocity(v0, law) => law.largest((v0 * (1.0 - of_third), v0 * (1.0 + of_third))),
         };
         self.case.on_line.highest(UpTo {
             groups: Groups { b, a_n, ..groups },
             tau,
             latency: self.case.channel().latency,
-            factor: 1.0 + most,
+            factor: 1.0 + of_gain,
         })
     }
 }

@@ -12,6 +12,7 @@
 //!   places; `clip`, `areas`, `off_scale`: lines at edges, names and values beyond
 //! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
 //!   them, and free places on curves
+//! - `fit`: a friction law among the points to which it was fitted
 //! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
@@ -42,6 +43,8 @@ mod curve_labels;
 mod degrees;
 mod error;
 mod file;
+#[cfg(feature = "fit")]
+mod fit;
 mod fitted;
 mod font;
 mod gradient;
@@ -90,6 +93,8 @@ use choice::Choice;
 pub use error::PictureError;
 use file::{Format, Origin};
 pub use file::{Picture, is_name, named_in};
+#[cfg(feature = "fit")]
+pub use fit::FitPicture;
 pub use gradient::ColourMap;
 pub use options::{Named, PictureKind, PictureOptions};
 pub use roots::PointPicture;
@@ -165,6 +170,23 @@ pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, Pictur
     roots::draw(picture, &mut scene);
     let origin = Origin {
         of: "the characteristic roots of a point".to_owned(),
+        named: "",
+    };
+    Picture::of(&scene, format, path, origin)
+}
+
+/// Draws a fit for the file `path`, as [`draw`] does a map: the points, the law, and what the
+/// points leave open of it.
+///
+/// # Errors
+/// When the name of the file is not that of a picture.
+#[cfg(feature = "fit")]
+pub fn draw_fit(picture: &FitPicture, path: &Path) -> Result<Picture, PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    fit::draw(picture, &mut scene);
+    let origin = Origin {
+        of: "a fit of friction".to_owned(),
         named: "",
     };
     Picture::of(&scene, format, path, origin)

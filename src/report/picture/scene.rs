@@ -134,6 +134,15 @@ impl Scene {
         }
     }
 
+    /// Fills the area between two curves over the same places: (x, y of one, y of the other).
+    pub(super) fn band(&mut self, slices: Vec<(f64, f64, f64)>, colour: Rgb) {
+        self.marks.push(Mark::Band {
+            slices,
+            colour,
+            opacity: 1.0,
+        });
+    }
+
     /// Adds a dot.
     pub(super) fn dot(&mut self, (x, y): Point, colour: Rgb, diameter: f64) {
         // A line with round ends that is too short to be visible as a line.

@@ -1,6 +1,8 @@
-//! Remarks on a measured friction law: velocities that lie beyond its points.
+//! Remarks on a measured friction law: velocities that lie beyond its points, and slopes that its
+//! points contradict.
 
 use super::law_kind::LawKind;
+use super::noisy_slope::Noisy;
 use super::parameter::Parameter;
 use super::spec::SweepSpec;
 use super::units::Units;
@@ -18,6 +20,22 @@ impl Setting {
     #[must_use]
     pub(crate) fn beyond_curve(&self, units: &Units) -> Option<String> {
         Curve::of(self.law()?, units)?.remark_on(Parameter::V0.name(), &[self.get(Parameter::V0)])
+    }
+
+    /// A remark on a v0 beyond the points of a measured friction law, or at which its slope is not
+    /// sure.
+    #[must_use]
+    pub(crate) fn curve_remark(&self, units: &Units) -> Option<String> {
+        self.remark_at(&[self.get(Parameter::V0)], units)
+    }
+
+    fn remark_at(&self, speeds: &[f64], units: &Units) -> Option<String> {
+        let beyond = Curve::of(self.law()?, units)?.remark_on(Parameter::V0.name(), speeds);
+        let raw = self.fitted().is_none();
+        beyond.or_else(|| {
+            raw.then(|| noisy_slope(self.law()?, speeds, units))
+                .flatten()
+        })
     }
 
     /// A remark on velocities that were computed, called `of`, beyond the points of a measured
@@ -47,14 +65,46 @@ impl Setting {
 }
 
 impl SweepSpec {
-    /// A remark on values of v0, fixed or of an axis, beyond the points of a measured friction law.
+    /// A remark on values of v0, fixed or of an axis, beyond the points of a measured friction law,
+    /// or at which its slope is not sure.
     #[must_use]
-    pub(crate) fn beyond_curve(&self) -> Option<String> {
+    pub(crate) fn curve_remark(&self) -> Option<String> {
         let axis = self.axes.iter().find(|a| a.parameter == Parameter::V0);
         let fixed = [self.fixed.get(Parameter::V0)];
         let speeds = axis.map_or(&fixed[..], |axis| &axis.values);
-        Curve::of(self.fixed.law()?, &self.units)?.remark_on(Parameter::V0.name(), speeds)
+        self.fixed.remark_at(speeds, &self.units)
     }
+}
+
+/// A remark on the first of some v0 at which the points of a measured curve contradict its slope.
+fn noisy_slope(law: &LawKind, speeds: &[f64], units: &Units) -> Option<String> {
+    let LawKind::Table(table) = law else {
+        return None;
+    };
+    let mut noisy = speeds
+        .iter()
+        .filter_map(|v0| Some((*v0, Noisy::at(table, *v0)?)));
+    let (v0, found) = noisy.next()?;
+    let unit = |parameter| match &*units.of_parameter(parameter) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let short = |value: f64| Shown(to_digits(value, 2)).to_string();
+    let slopes = found.slopes.map(short);
+    let noise = found.noise.map_or_else(String::new, |noise| {
+        let percent = short(100.0 * noise / table.value(v0));
+        let size = short(noise);
+        format!("; the noise of the points is about {size} ({percent} % of mu_k there)")
+    });
+    Some(format!(
+        "the slope of the measured curve at v0 = {}{} is not sure: between neighbouring points it \
+         is {} and {}{}{noise}: `slipmap fit` tells the slope with its error",
+        Shown(v0),
+        unit(Parameter::V0),
+        slopes[0],
+        slopes[1],
+        unit(Parameter::MuPrime),
+    ))
 }
 
 /// The ends of a measured curve.
@@ -122,7 +172,7 @@ mod tests {
     fn told(v0: &str, units: &str) -> Option<String> {
         let rest = format!("tau = [1]\n[fixed]\nalpha_v = 1\n{LAW}{units}");
         let spec: SweepSpec = format!("[axes]\nv0 = {v0}\n{rest}").parse().unwrap();
-        spec.beyond_curve()
+        spec.curve_remark()
     }
 
     #[test]
@@ -171,6 +221,6 @@ mod tests {
     #[test]
     fn other_laws_have_no_end() {
         let text = "[axes]\nv0 = [99]\ntau = [1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n";
-        assert_eq!(text.parse::<SweepSpec>().unwrap().beyond_curve(), None);
+        assert_eq!(text.parse::<SweepSpec>().unwrap().curve_remark(), None);
     }
 }

@@ -1,0 +1,218 @@
+//! The minimum of the sum of weighted squares, by the method of Levenberg and Marquardt, and the
+//! covariance of the parameters there.
+//!
+//! ```text
+//! r_i = (μ_K(v_i; p) − μ_i)/s_i,   J = ∂r/∂p,   H = J (JᵀJ)⁻¹ Jᵀ
+//! C = (JᵀJ)⁻¹ Jᵀ diag(r_i² w_i) J (JᵀJ)⁻¹,   w_i = ½ (1/(1 − H_ii) + 1/(1 − H_ii)²)        (2)
+//! ```
+//!
+//! C holds whatever the variances of the points are, of which the s_i may tell nothing. w_i is the
+//! mean of two corrections for the number of points, HC2 and HC3 of J. G. MacKinnon and H. White,
+//! *Some heteroskedasticity-consistent covariance matrix estimators with improved finite sample
+//! properties*, J. Econometrics 29 (1985) 305: alone, the one makes errors a little too small and
+//! the other a little too large.
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+
+use super::candidate::{Candidate, Seen};
+
+/// The size of residuals where values make no law: the search turns back.
+const NO_LAW: f64 = 1e6;
+/// Steps of difference quotients, relative to a number.
+const STEP: f64 = 1e-6;
+/// Steps of Gauss and Newton after the search, which stops as soon as the sum hardly falls.
+const POLISH: usize = 4;
+/// Where less than this is left of 1 − H_ii, a point alone determines a number, and nothing tells
+/// the error of that.
+const LEAST_LEFT: f64 = 0.02;
+/// JᵀJ with columns of length 1 is singular where a pivot is less than this.
+const SINGULAR: f64 = 1e-11;
+
+/// The points with their weights.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighted<'p> {
+    pub seen: Seen<'p>,
+    /// s_i.
+    pub deviations: &'p [f64],
+}
+
+/// The numbers of a law at the minimum.
+#[derive(Debug, Clone)]
+pub(super) struct Minimum {
+    pub values: Vec<f64>,
+    /// Σ r_i².
+    pub sum: f64,
+}
+
+struct Problem<'p> {
+    candidate: &'p Candidate,
+    points: Weighted<'p>,
+    values: DVector<f64>,
+}
+
+impl Problem<'_> {
+    fn at(&self, values: &DVector<f64>) -> Option<DVector<f64>> {
+        let curve = self.candidate.curve(values.as_slice())?;
+        let Seen { speeds, mu_k } = self.points.seen;
+        let all = speeds.iter().zip(mu_k).zip(self.points.deviations);
+        let residuals = all.map(|((&v, &mu), s)| (curve.value(v) - mu) / s);
+        Some(DVector::from_iterator(speeds.len(), residuals))
+    }
+
+    /// A central difference quotient for each number, one of one side at the end of its range.
+    fn slopes(&self) -> Option<DMatrix<f64>> {
+        let here = self.at(&self.values)?;
+        let columns: Option<Vec<DVector<f64>>> = (0..self.values.len())
+            .map(|i| {
+                let step = STEP * self.values[i].abs().max(STEP);
+                let moved = |by: f64| {
+                    let mut values = self.values.clone();
+                    values[i] += by;
+                    self.at(&values)
+                };
+                Some(match (moved(-step), moved(step)) {
+                    (Some(below), Some(above)) => (above - below) / (2.0 * step),
+                    (None, Some(above)) => (above - &here) / step,
+                    (Some(below), None) => (&here - below) / step,
+                    (None, None) => return None,
+                })
+            })
+            .collect();
+        Some(DMatrix::from_columns(&columns?))
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, values: &DVector<f64>) {
+        self.values.copy_from(values);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.values.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let beyond = || DVector::repeat(self.points.seen.speeds.len(), NO_LAW);
+        Some(self.at(&self.values).unwrap_or_else(beyond))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        self.slopes()
+    }
+}
+
+impl Minimum {
+    /// The lowest minimum that is found from the starts of a candidate; none where the search does
+    /// not end in one.
+    pub(super) fn of(candidate: &Candidate, points: Weighted) -> Option<Self> {
+        let starts = candidate.starts(points.seen).into_iter();
+        let found = starts.filter_map(|start| Self::from(candidate, points, start));
+        found.min_by(|one, other| one.sum.total_cmp(&other.sum))
+    }
+
+    fn from(candidate: &Candidate, points: Weighted, start: Vec<f64>) -> Option<Self> {
+        let problem = Problem {
+            candidate,
+            points,
+            values: DVector::from_vec(start),
+        };
+        problem.at(&problem.values)?;
+        let (mut problem, report) = LevenbergMarquardt::new().minimize(problem);
+        if !report.termination.was_successful() {
+            return None;
+        }
+        for _ in 0..POLISH {
+            let (residuals, slopes) = (problem.at(&problem.values)?, problem.slopes()?);
+            let Some(step) = Normal::of(&slopes).map(|of| of.solve(&slopes.tr_mul(&residuals)))
+            else {
+                break;
+            };
+            let values = &problem.values - step;
+            let better = problem
+                .at(&values)
+                .filter(|r| r.norm_squared() <= residuals.norm_squared());
+            if better.is_none() {
+                break;
+            }
+            problem.values = values;
+        }
+        let sum = problem.at(&problem.values)?.norm_squared();
+        Some(Self {
+            values: problem.values.as_slice().to_vec(),
+            sum,
+        })
+    }
+
+    /// The covariance C of (2); none where the points do not determine the numbers.
+    pub(super) fn covariance(
+        &self,
+        candidate: &Candidate,
+        points: Weighted,
+    ) -> Option<DMatrix<f64>> {
+        let problem = Problem {
+            candidate,
+            points,
+            values: DVector::from_column_slice(&self.values),
+        };
+        let (residuals, slopes) = (problem.at(&problem.values)?, problem.slopes()?);
+        // (JᵀJ)⁻¹ Jᵀ, a column for each point.
+        let solved = Normal::of(&slopes)?.solve(&slopes.transpose());
+        let mut weighted = solved.clone();
+        for (i, mut column) in weighted.column_iter_mut().enumerate() {
+            let leverage = slopes.row(i).transpose().dot(&solved.column(i));
+            let left = 1.0 - leverage;
+            if left < LEAST_LEFT {
+                return None;
+            }
+            let grown = 0.5 * (1.0 / left + 1.0 / (left * left));
+            column *= residuals[i] * residuals[i] * grown;
+        }
+        Some(weighted * solved.transpose())
+    }
+}
+
+/// JᵀJ, factored; its columns scaled to length 1.
+struct Normal {
+    scales: DVector<f64>,
+    factor: nalgebra::Cholesky<f64, Dyn>,
+}
+
+impl Normal {
+    fn of(slopes: &DMatrix<f64>) -> Option<Self> {
+        let scales = DVector::from_iterator(slopes.ncols(), slopes.column_iter().map(|c| c.norm()));
+        if !scales.iter().all(|s| s.is_finite() && *s > 0.0) {
+            return None;
+        }
+        let scaled = slopes * DMatrix::from_diagonal(&scales.map(|s| 1.0 / s));
+        let factor = nalgebra::Cholesky::new(scaled.tr_mul(&scaled))?;
+        let pivots = factor.l_dirty().diagonal();
+        let regular = pivots.iter().all(|p| p * p > SINGULAR);
+        regular.then_some(Self { scales, factor })
+    }
+
+    /// (JᵀJ)⁻¹ of columns.
+    fn solve<C: nalgebra::Dim>(
+        &self,
+        of: &nalgebra::OMatrix<f64, Dyn, C>,
+    ) -> nalgebra::OMatrix<f64, Dyn, C>
+    where
+        nalgebra::DefaultAllocator: nalgebra::allocator::Allocator<Dyn, C>,
+    {
+        let mut solved = of.clone();
+        let divide = |m: &mut nalgebra::OMatrix<f64, Dyn, C>| {
+            for (mut row, scale) in m.row_iter_mut().zip(self.scales.iter()) {
+                row /= *scale;
+            }
+        };
+        divide(&mut solved);
+        self.factor.solve_mut(&mut solved);
+        divide(&mut solved);
+        solved
+    }
+}
