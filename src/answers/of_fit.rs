@@ -3,13 +3,13 @@
 //!
 //! μ_K and μ_K′ at the sliding velocity are drawn from the normal distribution with the errors and
 //! the correlation that follow from the fit, to first order; after few points it is as much wider
-//! as Student's distribution is at 95 %. The draws are points of a Sobol
-//! sequence, the same for every setting.
+//! as Student's distribution is at 95 %. The draws are points of a Sobol sequence, the same for
+//! every setting.
 
 use super::best::{BestSettings, Ranges, RobustSetting, robust_setting};
 use super::margins::beyond_letter;
 use super::sobol::normal;
-use crate::linear::best::{SearchedGain, abscissa_at};
+use crate::linear::best::{SearchedGain, UNPROVED, abscissa_at};
 use crate::linear::margins::Changes;
 use crate::linear::spectrum::RootFinder;
 use crate::model::stop::Stop;
@@ -23,8 +23,6 @@ use crate::setting::{Parameter, Setting};
 pub const DRAWS: u32 = 1000;
 /// The scrambling of the sequence.
 const SEED: u32 = 0;
-/// Slower decay than this, in units of √(κ/M), counts as none.
-const UNPROVED: f64 = 1e-8;
 
 /// What the laws that were drawn make of a setting, in its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,12 +72,12 @@ impl OfFit {
                 abscissa: f64::NEG_INFINITY,
             },
         };
-        let mut finder = RootFinder::default();
+        let (mut finder, wider) = (RootFinder::default(), wider(setting));
         for number in 0..DRAWS {
             if stop.is_set() {
                 break;
             }
-            let drawn = drawn(&sliding, wider(setting), number);
+            let drawn = drawn(&sliding, wider, number);
             let groups = oscillator.groups(drawn, control);
             let abscissa = abscissa_at(beyond, &mut finder, (groups, tau), f64::INFINITY);
             if !abscissa.is_finite() {
@@ -125,7 +123,7 @@ fn wider(setting: &Setting) -> f64 {
 }
 
 /// The relative changes of gain, delay and μ′ by which friction may be off after a fit: one
-/// standard error, or more after few points. None where the law was not fitted. Where the load is
+/// standard error, however few the points are. None where the law was not fitted. Where the load is
 /// controlled, μ_K is part of the gain. Delays are as they are.
 ///
 /// # Errors

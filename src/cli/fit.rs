@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 use crate::fit::{Fit, LAWS, Wanted, fit};
 use crate::report::numbers::{counted, rounded, unit_behind, with_error};
-use crate::report::picture::{self, FitPicture, Picture, PictureError};
+use crate::report::picture::{self, FitPicture};
 use crate::setting::Parameter;
 use crate::setting::fitted::{Fitted, FittedNumber};
 use crate::setting::fitted_sliding::FittedSliding;
@@ -22,7 +22,7 @@ use super::failure::Failure;
 use super::fit_args::FitArgs;
 use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
-use super::output::{check_picture, tell_dimensionless};
+use super::output::{check_picture, save_picture, tell_dimensionless};
 use super::say::{self, ForPeople};
 use super::setting;
 use super::sweep_file::{STANDARD_INPUT, read_curve};
@@ -34,9 +34,9 @@ const OF_ERRORS: usize = 3;
 #[command(
     after_help = "Example: slipmap fit belt.csv --v0 1mm/s --normal-load 20N --save fit.toml
 
-The errors hold whatever the noise of the points is like. Where another law describes them nearly \
-as well, they hold the difference of both slopes too. What was fitted is rounded to a thousandth \
-of its standard error."
+The errors hold for independent points, whatever the noise of each is. Where another law describes \
+them nearly as well, the error of the slope holds the difference of both. What was fitted is \
+rounded to a thousandth of its standard error."
 )]
 pub(super) struct Args {
     /// The measured points: columns of the speed, and of μ_K or a force, which is divided by
@@ -169,10 +169,9 @@ fn sliding(found: &Fit) -> Result<FittedSliding, Failure> {
 
 /// Tells that μ_S is assumed, where neither the points nor a flag say it.
 fn tell_assumed_mu_s(args: &Args, found: &Fit) {
-    let fitted = found.setting.fitted().into_iter().flat_map(Fitted::errors);
+    let mut fitted = found.setting.fitted().into_iter().flat_map(Fitted::errors);
     let mu_s = FittedNumber::Parameter(Parameter::MuS);
-    let known =
-        args.rig.given(Parameter::MuS).is_some() || fitted.into_iter().any(|(of, _)| of == mu_s);
+    let known = args.rig.given(Parameter::MuS).is_some() || fitted.any(|(of, _)| of == mu_s);
     if !known {
         let value = found.setting.get(Parameter::MuS);
         say::note(format_args!(
@@ -372,28 +371,13 @@ impl Args {
             units: &self.rig.units,
             title: &say::visible_line(&name),
         };
-        let draw = |path: &Path| picture::draw_fit(&drawn, path);
-        if let Some(path) = &self.picture {
-            let saved = draw(path).and_then(Picture::save);
-            saved.map_err(|error| Failure::failed(error.to_string()))?;
-            return Ok(Some(path.clone()));
-        }
         let mut beside = match self.data == Path::new(STANDARD_INPUT) {
             true => "points".into(),
             false => self.data.file_stem().unwrap_or_default().to_owned(),
         };
         beside.push("-fit.png");
-        let beside = PathBuf::from(beside);
-        match draw(&beside).and_then(Picture::save_unasked) {
-            Ok(()) => Ok(Some(beside)),
-            Err(error) => {
-                let elsewhere = match error {
-                    PictureError::OthersWork { .. } => "; --picture draws elsewhere",
-                    _ => "",
-                };
-                say::remark(format_args!("warning: no picture: {error}{elsewhere}"));
-                Ok(None)
-            }
-        }
+        save_picture(self.picture.as_deref(), beside.into(), |path| {
+            picture::draw_fit(&drawn, path)
+        })
     }
 }

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 
 use crate::maps::assembly::Assembled;
 use crate::report::numbers::{grouped, representable};
-use crate::report::picture;
+use crate::report::picture::{self, Picture, PictureError};
 use crate::setting::units::Units;
 use crate::sweep::Plan;
 use crate::sweep::described::root::Provenance;
@@ -90,6 +90,31 @@ pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Re
         return Err(Failure::bad_input(message));
     }
     Ok(())
+}
+
+/// Saves the picture that `draw` draws: under the `asked` name, or else `beside`. There it replaces
+/// only files of slipmap, and a failure is only a warning; none if nothing is saved.
+pub(super) fn save_picture(
+    asked: Option<&Path>,
+    beside: PathBuf,
+    draw: impl Fn(&Path) -> Result<Picture, PictureError>,
+) -> Result<Option<PathBuf>, Failure> {
+    if let Some(asked) = asked {
+        let saved = draw(asked).and_then(Picture::save);
+        saved.map_err(|error| Failure::failed(error.to_string()))?;
+        return Ok(Some(asked.to_owned()));
+    }
+    match draw(&beside).and_then(Picture::save_unasked) {
+        Ok(()) => Ok(Some(beside)),
+        Err(error) => {
+            let elsewhere = match error {
+                PictureError::OthersWork { .. } => "; --picture draws elsewhere",
+                _ => "",
+            };
+            say::remark(format_args!("warning: no picture: {error}{elsewhere}"));
+            Ok(None)
+        }
+    }
 }
 
 /// The provenance of a file made now by `command` from `input`.

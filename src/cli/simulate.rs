@@ -6,7 +6,7 @@ use crate::answers::Trace;
 use crate::answers::trace::TraceError;
 use crate::explore::motion::{Followed, MotionSummary};
 use crate::report::numbers::{grouped, unit_behind};
-use crate::report::picture::{self, Picture, PictureError, PictureOptions};
+use crate::report::picture::{self, PictureOptions};
 use crate::report::table::write_samples;
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::setting_text::setting_text;
@@ -27,7 +27,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
 use super::output::{
-    check_picture, output_path, provenance, warn_beyond_curve, warn_of_idle_delay,
+    check_picture, output_path, provenance, save_picture, warn_beyond_curve, warn_of_idle_delay,
 };
 use super::parameters::ParameterArgs;
 use super::plot;
@@ -331,26 +331,7 @@ fn draw(
             picture::draw_trace(spec, trace, path, picture, &options)
         })
     };
-    if let Some(asked) = &args.picture {
-        draw(asked)
-            .and_then(Picture::save)
-            .map_err(|e| Failure::failed(e.to_string()))?;
-        return Ok(Some(asked.clone()));
-    }
-    let beside = plot::beside(path);
-    match draw(&beside).and_then(Picture::save_unasked) {
-        Ok(()) => Ok(Some(beside)),
-        Err(error @ PictureError::OthersWork { .. }) => {
-            say::remark(format_args!(
-                "warning: no picture: {error}; --picture draws elsewhere"
-            ));
-            Ok(None)
-        }
-        Err(error) => {
-            say::remark(format_args!("warning: no picture: {error}"));
-            Ok(None)
-        }
-    }
+    save_picture(args.picture.as_deref(), plot::beside(path), draw)
 }
 
 fn failure(error: &TraceError) -> Failure {

@@ -52,7 +52,7 @@ impl Setting {
         let at = self.sliding_point()?;
         let (mut of_mu_k, mut of_mu_prime) = (Vec::new(), Vec::new());
         for (number, error) in fitted.errors() {
-            let [mu_k, mu_prime] = self.change_by(number, error)?;
+            let [mu_k, mu_prime] = self.change_by(at, number, error)?;
             of_mu_k.push(mu_k);
             of_mu_prime.push(mu_prime);
         }
@@ -73,13 +73,17 @@ impl Setting {
         }))
     }
 
-    /// By how much μ_K and μ_K′ at the sliding velocity change with a fitted number, for one
-    /// standard error of it.
-    fn change_by(&self, number: FittedNumber, error: f64) -> Result<[f64; 2], ModelError> {
+    /// By how much μ_K and μ_K′ at the sliding velocity, which are `here`, change with a fitted
+    /// number, for one standard error of it.
+    fn change_by(
+        &self,
+        here: SlidingPoint,
+        number: FittedNumber,
+        error: f64,
+    ) -> Result<[f64; 2], ModelError> {
         if error == 0.0 {
             return Ok([0.0; 2]);
         }
-        let here = self.sliding_point()?;
         let at = |steps: f64| self.moved(number, steps * error)?.sliding_point();
         let above = at(STEP)?;
         // At the end of its range a number moves to one side only.

@@ -42,6 +42,7 @@ pub use letter::{Letter, SearchedGain};
 pub use regions::{Bound, Stretch};
 pub use rig::Rig;
 pub(crate) use rig::abscissa_at;
+pub(crate) use robust::UNPROVED;
 pub use robust::{Robust, robust, worst_around};
 pub use search::{ByParameters, Family, Place, Search};
 

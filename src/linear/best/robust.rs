@@ -20,8 +20,8 @@ use crate::model::stop::Stop;
 
 /// The radius, in units of the frame, to which a descent goes.
 const FINE: f64 = 1e-6;
-/// Slower decay than this is told only where it is proved.
-const UNPROVED: f64 = 1e-8;
+/// Slower decay than this is told only where it is proved, dimensionless.
+pub(crate) const UNPROVED: f64 = 1e-8;
 /// Places that a proof may add.
 const MOST_PLACES: usize = 24;
 /// The relative gap allowed between the proved W and the largest sampled one; the second value
