@@ -3,8 +3,9 @@
 //! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
 //!   sequence, followed and counted
 //! - `best`: best settings in physical units, the ranges searched by default
+//! - `drawn_laws`: the laws that a fit allows, and for which of them a setting is stable
 //! - `margins`: margins of a setting, in its own units
-//! - `of_fit`: the share of the laws that a fit allows for which a setting is stable
+//! - `robust_to_fit`: the setting that is most robust against the errors of a fit
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
 //! - `trace`: a motion sampled over time, with its events
@@ -14,8 +15,9 @@
 
 pub mod basin;
 pub mod best;
+pub mod drawn_laws;
 pub mod margins;
-pub mod of_fit;
+pub mod robust_to_fit;
 pub mod samples;
 mod sobol;
 pub mod trace;

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::answers::of_fit::MOST_ERRORS;
+use crate::answers::robust_to_fit::MOST_ERRORS;
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::linear::best::Optimum;
 use crate::report::numbers::{counted, rounded, unit_behind};

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::fit::{Fit, LAWS, Wanted, fit};
+use crate::fit::{FittedLaw, LAWS, Wanted, fit};
 use crate::report::numbers::{counted, rounded, unit_behind, with_error};
 use crate::report::picture::{self, FitPicture};
 use crate::setting::Parameter;
-use crate::setting::fitted::{Fitted, FittedNumber};
+use crate::setting::fit_errors::{FitErrors, FittedNumber};
 use crate::setting::fitted_sliding::FittedSliding;
 use crate::setting::law_kind::LawKind;
 use crate::setting::measured::{Measured, MeasuredPoint};
@@ -154,7 +154,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 }
 
 /// Friction at v0, with its errors.
-fn sliding(found: &Fit) -> Result<FittedSliding, Failure> {
+fn sliding(found: &FittedLaw) -> Result<FittedSliding, Failure> {
     let sliding = found.setting.fitted_sliding().map_err(|error| {
         Failure::bad_input_with_help(
             format!("the fitted law is refused: {error}"),
@@ -168,8 +168,12 @@ fn sliding(found: &Fit) -> Result<FittedSliding, Failure> {
 }
 
 /// Tells that μ_S is assumed, where neither the points nor a flag say it.
-fn tell_assumed_mu_s(args: &Args, found: &Fit) {
-    let mut fitted = found.setting.fitted().into_iter().flat_map(Fitted::errors);
+fn tell_assumed_mu_s(args: &Args, found: &FittedLaw) {
+    let mut fitted = found
+        .setting
+        .fit_errors()
+        .into_iter()
+        .flat_map(FitErrors::errors);
     let mu_s = FittedNumber::Parameter(Parameter::MuS);
     let known = args.rig.given(Parameter::MuS).is_some() || fitted.any(|(of, _)| of == mu_s);
     if !known {
@@ -181,7 +185,7 @@ fn tell_assumed_mu_s(args: &Args, found: &Fit) {
 }
 
 /// Warns where v0 lies beyond the points.
-fn warn_beyond(points: &[MeasuredPoint], found: &Fit, units: &Units) {
+fn warn_beyond(points: &[MeasuredPoint], found: &FittedLaw, units: &Units) {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return;
     };
@@ -198,12 +202,12 @@ fn warn_beyond(points: &[MeasuredPoint], found: &Fit, units: &Units) {
 }
 
 /// The parameters of a law by their names, with the errors of those that were fitted.
-fn parameters(found: &Fit) -> Vec<(String, f64, Option<f64>)> {
+fn parameters(found: &FittedLaw) -> Vec<(String, f64, Option<f64>)> {
     let setting = &found.setting;
     let errors: Vec<(FittedNumber, f64)> = setting
-        .fitted()
+        .fit_errors()
         .into_iter()
-        .flat_map(Fitted::errors)
+        .flat_map(FitErrors::errors)
         .collect();
     if let Some(LawKind::Table(table)) = setting.law() {
         let points = table.mu_k().iter().zip(&errors).enumerate();
@@ -230,12 +234,12 @@ fn parameters(found: &Fit) -> Vec<(String, f64, Option<f64>)> {
 }
 
 /// The ends between which the slope lies with a probability of 95 %.
-fn interval(found: &Fit, sliding: &FittedSliding) -> [f64; 2] {
-    let reach = found.errors_in_interval * sliding.mu_prime_error;
+fn interval(found: &FittedLaw, sliding: &FittedSliding) -> [f64; 2] {
+    let reach = found.errors_in_interval() * sliding.mu_prime_error;
     [-reach, reach].map(|off| to_digits(sliding.at.mu_prime + off, OF_ERRORS + 2))
 }
 
-fn answer(args: &Args, curve: &Measured, found: &Fit, sliding: &FittedSliding) -> FitAnswer {
+fn answer(args: &Args, curve: &Measured, found: &FittedLaw, sliding: &FittedSliding) -> FitAnswer {
     let parameters = parameters(found);
     let fitted = parameters
         .iter()
@@ -249,7 +253,7 @@ fn answer(args: &Args, curve: &Measured, found: &Fit, sliding: &FittedSliding) -
             .iter()
             .map(|(name, value, _)| (name.clone(), *value))
             .collect(),
-        speeds: found.speeds.clone(),
+        speeds: found.speeds().map(<[f64]>::to_vec),
         mu_k: sliding.at.mu_k,
         mu_k_error: error(sliding.mu_k_error),
         mu_prime: sliding.at.mu_prime,
@@ -274,7 +278,7 @@ fn print(
     out: &mut impl Write,
     args: &Args,
     curve: &Measured,
-    (found, sliding): (&Fit, &FittedSliding),
+    (found, sliding): (&FittedLaw, &FittedSliding),
 ) -> std::io::Result<()> {
     let units = &args.rig.units;
     let unit = |parameter| unit_behind(&units.of_parameter(parameter));
@@ -296,8 +300,7 @@ fn print(
     for (i, (name, value, error)) in parameters(found).into_iter().enumerate() {
         let of = Parameter::from_name(&name).map_or_else(String::new, unit);
         let at = found
-            .speeds
-            .as_ref()
+            .speeds()
             .and_then(|speeds| speeds.get(i))
             .map(|speed| format!(" at {}{}", rounded(*speed, 5), unit(Parameter::V0)));
         let text = match error {
@@ -326,7 +329,7 @@ fn print(
 }
 
 /// The best form of every law with its criterion, the best law first.
-fn compared(found: &Fit) -> String {
+fn compared(found: &FittedLaw) -> String {
     let mut told: Vec<&str> = Vec::new();
     let mut words = Vec::new();
     for of in &found.contenders {
@@ -347,7 +350,7 @@ impl Args {
         }
     }
 
-    fn inputs(&self, found: &Fit) -> Inputs {
+    fn inputs(&self, found: &FittedLaw) -> Inputs {
         let given = |parameter: Parameter| self.rig.given(parameter).is_some();
         let mut inputs = Inputs::default().and("data", self.data.display().to_string());
         for parameter in Parameter::ALL.into_iter().filter(|p| given(*p)) {
@@ -360,7 +363,7 @@ impl Args {
 
     /// Draws the picture. Under the default name it replaces only pictures of slipmap, and a
     /// failure is only a warning.
-    fn draw(&self, curve: &Measured, found: &Fit) -> Result<Option<PathBuf>, Failure> {
+    fn draw(&self, curve: &Measured, found: &FittedLaw) -> Result<Option<PathBuf>, Failure> {
         let name = self
             .data
             .file_name()

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::explore::margins::{FitMargin, Margin, Margins, StabilityBox};
+use crate::explore::margins::{Margin, Margins, StabilityBox, StableShare};
 use crate::explore::point::Point;
 use crate::explore::stability::{Stability, Wanted};
 use crate::model::stop::Stop;
@@ -272,7 +272,7 @@ fn along(margin: &Margin, at: f64, unit: &str) -> String {
 }
 
 /// What the errors of a fitted law leave open.
-pub(super) fn of_fit(fit: &FitMargin, margins: &Margins, units: &Units) -> String {
+pub(super) fn of_fit(fit: &StableShare, margins: &Margins, units: &Units) -> String {
     let has = match margins.required_decay {
         0.0 => "stable",
         _ => "so",

@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::answers::best::{BestSettings, Ranges, RobustSetting, robust_setting};
-use crate::answers::of_fit::{error_of_fit, robust_to_fit};
+use crate::answers::robust_to_fit::{error_of_fit, robust_to_fit};
 use crate::linear::best::SearchedGain;
 use crate::linear::margins::Changes;
 use crate::model::stop::Stop;

@@ -6,8 +6,8 @@
 use serde::Serialize;
 
 use super::stability::Stability;
+use crate::answers::drawn_laws::{DRAWS, DrawnLaws};
 use crate::answers::margins::SettingMargins;
-use crate::answers::of_fit::{DRAWS, OfFit};
 use crate::linear::margins::{Limits, MarginSearch, Radius};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
@@ -58,13 +58,13 @@ pub struct Margins {
     pub looked_up_to: LookedUpTo,
     /// What the errors of a fitted friction law leave open; null where the law was not fitted.
     #[cfg_attr(feature = "serve", schema(required))]
-    pub fit: Option<FitMargin>,
+    pub fit: Option<StableShare>,
 }
 
 /// What the errors of a fitted friction law leave open of a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct FitMargin {
+pub struct StableShare {
     /// The standard error of μ_K(v0).
     pub mu_k_error: f64,
     /// The standard error of μ_K′(v0).
@@ -84,8 +84,8 @@ pub struct FitMargin {
     pub worst_mu_prime: f64,
 }
 
-impl From<OfFit> for FitMargin {
-    fn from(of: OfFit) -> Self {
+impl From<DrawnLaws> for StableShare {
+    fn from(of: DrawnLaws) -> Self {
         Self {
             mu_k_error: of.sliding.mu_k_error,
             mu_prime_error: of.sliding.mu_prime_error,
@@ -189,7 +189,7 @@ impl Margins {
         let around = around.heeding(stop);
         let mut margins = Self {
             decays: around.stable(),
-            fit: OfFit::at(setting, decay, stop)?.map(Into::into),
+            fit: DrawnLaws::at(setting, decay, stop)?.map(Into::into),
             ..Self::lost(decay)
         };
         if margins.decays {

@@ -3,7 +3,7 @@
 use crate::model::elementary::{pow, power};
 use crate::model::table::NEAREST;
 use crate::model::{FrictionLaw, Table};
-use crate::setting::fitted::FittedNumber;
+use crate::setting::fit_errors::FittedNumber;
 use crate::setting::law_kind::LawKind;
 use crate::setting::{Parameter, Setting};
 
@@ -134,12 +134,9 @@ impl Candidate {
         }
     }
 
-    /// The velocities of the points of a spline; none for other laws.
-    pub(super) fn knots(&self) -> Option<&[f64]> {
-        match &self.form {
-            Form::Named { .. } => None,
-            Form::Spline(knots) => Some(knots),
-        }
+    /// Whether the law has a shape of its own, which a spline has not.
+    pub(super) fn has_shape(&self) -> bool {
+        matches!(self.form, Form::Named { .. })
     }
 
     /// Whether a number is σ, which a search may take below 0 although no law has it so.

@@ -18,8 +18,10 @@ use super::rounding::{correlation, error, to_a_thousandth_of};
 use super::weights::deviations;
 use crate::model::elementary::{ln, power};
 use crate::model::table::NEAREST;
-use crate::setting::fitted::{Fitted, FittedNumber};
+use crate::setting::fit_errors::{FitErrors, FittedNumber};
+use crate::setting::law_kind::LawKind;
 use crate::setting::measured::MeasuredPoint;
+use crate::setting::parameter::LARGEST;
 use crate::setting::{Parameter, Setting};
 
 /// Residuals below this part of the coefficients are rounding.
@@ -41,21 +43,35 @@ pub struct Wanted {
 
 /// A law that was fitted to points.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
+pub struct FittedLaw {
     /// Its name, of [`LAWS`].
     pub law: &'static str,
     /// A setting with the law and its errors: all else as it was given.
     pub setting: Setting,
-    /// The velocities of the points of a spline.
-    pub speeds: Option<Vec<f64>>,
     /// The laws that were fitted, the best one first.
     pub contenders: Vec<Contender>,
     /// The standard deviation of one reading about the law.
     pub noise: f64,
-    /// How many standard errors make an interval that holds the true value in 95 of 100 cases.
-    pub errors_in_interval: f64,
     /// Where the curve is known how well, over the velocities of the points.
     pub band: Vec<Band>,
+}
+
+impl FittedLaw {
+    /// How many standard errors make an interval that holds the true value in 95 of 100 cases.
+    #[must_use]
+    pub fn errors_in_interval(&self) -> f64 {
+        let errors = self.setting.fit_errors();
+        errors.map_or(f64::NAN, FitErrors::coverage_factor)
+    }
+
+    /// The velocities of the points of a spline; none for other laws.
+    #[must_use]
+    pub fn speeds(&self) -> Option<&[f64]> {
+        match self.setting.law() {
+            Some(LawKind::Table(table)) => Some(table.speeds()),
+            _ => None,
+        }
+    }
 }
 
 /// A law that was compared with others.
@@ -92,7 +108,11 @@ struct Found {
 ///
 /// # Errors
 /// Says why the points determine no law.
-pub fn fit(points: &[MeasuredPoint], wanted: Wanted, setting: Setting) -> Result<Fit, FitError> {
+pub fn fit(
+    points: &[MeasuredPoint],
+    wanted: Wanted,
+    setting: Setting,
+) -> Result<FittedLaw, FitError> {
     let speeds: Vec<f64> = points.iter().map(|point| point.speed).collect();
     let mu_k: Vec<f64> = points.iter().map(|point| point.mu_k).collect();
     let deviations = deviations(points);
@@ -160,7 +180,8 @@ fn first_determined(chain: Vec<Candidate>, velocities: usize, points: Weighted) 
             return None;
         }
         let covariance = minimum.covariance(&candidate, points)?;
-        if !covariance.iter().all(|c| c.is_finite()) {
+        let told = |variance: &f64| variance.sqrt() <= LARGEST;
+        if !covariance.diagonal().iter().all(told) {
             return None;
         }
         // A number that is 0 but for its error makes no law.
@@ -233,7 +254,7 @@ fn falls(points: Weighted, best: Option<&Found>) -> bool {
 
 impl Found {
     fn has_shape(&self) -> bool {
-        self.candidate.knots().is_none()
+        self.candidate.has_shape()
     }
 
     /// Whether the slope at `v0` follows from points. That of a spline does between its own, unless
@@ -267,7 +288,7 @@ impl Found {
         contenders: Vec<Contender>,
         between: f64,
         (mu_s, setting): (Option<f64>, Setting),
-    ) -> Fit {
+    ) -> FittedLaw {
         let numbers = self.candidate.numbers();
         let count = numbers.len();
         let errors: Vec<f64> = (0..count)
@@ -282,18 +303,16 @@ impl Found {
         let fitted = fitted.expect("a finite difference of slopes");
         let setting = self.candidate.setting(&values, mu_s, setting);
         let setting = setting.with_fit(fitted);
-        Fit {
+        FittedLaw {
             law: self.candidate.law,
-            speeds: self.candidate.knots().map(<[f64]>::to_vec),
             noise: error((self.minimum.sum / freedom).sqrt()),
-            errors_in_interval: coverage,
             band: band(&setting, points.seen),
             setting,
             contenders,
         }
     }
 
-    fn fitted(&self, numbers: Vec<FittedNumber>, errors: &[f64]) -> Fitted {
+    fn fitted(&self, numbers: Vec<FittedNumber>, errors: &[f64]) -> FitErrors {
         let variance = |i: usize| self.covariance[(i, i)];
         let of = |i: usize, j: usize| match (variance(i) * variance(j)).sqrt() {
             0.0 => 0.0,
@@ -301,7 +320,7 @@ impl Found {
         };
         let rows = (0..errors.len()).map(|i| (0..i).map(|j| of(i, j)).collect());
         let errors = errors.iter().copied().map(error).collect();
-        Fitted::new(numbers, errors, rows.collect()).expect("finite errors and correlations")
+        FitErrors::new(numbers, errors, rows.collect()).expect("finite errors and correlations")
     }
 }
 

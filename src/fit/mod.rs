@@ -19,5 +19,5 @@ mod rounding;
 mod weights;
 
 pub use candidate::LAWS;
-pub use choice::{Band, Contender, Fit, Wanted, fit};
+pub use choice::{Band, Contender, FittedLaw, Wanted, fit};
 pub use error::FitError;

@@ -31,7 +31,7 @@ impl Setting {
 
     fn remark_at(&self, speeds: &[f64], units: &Units) -> Option<String> {
         let beyond = Curve::of(self.law()?, units)?.remark_on(Parameter::V0.name(), speeds);
-        let raw = self.fitted().is_none();
+        let raw = self.fit_errors().is_none();
         beyond.or_else(|| {
             raw.then(|| noisy_slope(self.law()?, speeds, units))
                 .flatten()

@@ -1,12 +1,12 @@
 //! The keys of `[friction.fit]`, which `slipmap fit --save` writes.
 
-use super::fitted::{
-    BETWEEN_LAWS, CORRELATIONS, COVERAGE_FACTOR, Fitted, FittedNumber, NORMAL_95, PARAMETERS,
+use super::fit_errors::{
+    BETWEEN_LAWS, CORRELATIONS, COVERAGE_FACTOR, FitErrors, FittedNumber, NORMAL_95, PARAMETERS,
     STANDARD_ERRORS,
 };
 use super::keys::{Key, key, names, needed};
 use super::law_kind::LawKind;
-use super::parameter::Parameter;
+use super::parameter::{LARGEST, Parameter};
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// The keys of what a fit says, `fit` of `[friction]`.
@@ -42,7 +42,7 @@ pub(crate) const FIT: [Key; 5] = [
 ];
 
 /// Reads what a fit says of the law.
-pub(super) fn read(fit: &Entry, law: &LawKind) -> Result<Fitted, SpecError> {
+pub(super) fn read(fit: &Entry, law: &LawKind) -> Result<FitErrors, SpecError> {
     let mut numbers = match law {
         LawKind::Table(table) => (0..table.speeds().len()).map(FittedNumber::Point).collect(),
         _ => Vec::new(),
@@ -58,7 +58,7 @@ pub(super) fn read(fit: &Entry, law: &LawKind) -> Result<Fitted, SpecError> {
                 correlations = Some((rows?, entry.clone()));
             }
             COVERAGE_FACTOR => coverage_factor = entry.number_within(1.0..=1e3)?,
-            BETWEEN_LAWS => between_laws = entry.number_within(0.0..=1e12)?,
+            BETWEEN_LAWS => between_laws = entry.number_within(0.0..=LARGEST)?,
             _ => return Err(entry.unknown(&names(&FIT))),
         }
     }
@@ -68,7 +68,7 @@ pub(super) fn read(fit: &Entry, law: &LawKind) -> Result<Fitted, SpecError> {
     if numbers.is_empty() {
         return Err(missing(PARAMETERS).help("name those of the law that were fitted"));
     }
-    let fitted = Fitted::new(numbers, errors, rows);
+    let fitted = FitErrors::new(numbers, errors, rows);
     let fitted = fitted.and_then(|of| of.covering(coverage_factor, between_laws));
     fitted.map_err(|(key, why)| match key {
         CORRELATIONS => of_rows.error(why),

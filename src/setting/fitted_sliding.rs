@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::fitted::{Fitted, FittedNumber};
+use super::fit_errors::{FitErrors, FittedNumber};
 use super::law_kind::LawKind;
 use super::values::Setting;
 use crate::model::table::TableColumn;
@@ -28,15 +28,15 @@ pub struct FittedSliding {
 impl Setting {
     /// The setting with what a fit says of its friction law.
     #[must_use]
-    pub fn with_fit(mut self, fitted: Fitted) -> Self {
-        self.fitted = Some(Arc::new(fitted));
+    pub fn with_fit(mut self, fitted: FitErrors) -> Self {
+        self.fit_errors = Some(Arc::new(fitted));
         self
     }
 
     /// What a fit says of the friction law, if it was fitted.
     #[must_use]
-    pub fn fitted(&self) -> Option<&Fitted> {
-        self.fitted.as_deref()
+    pub fn fit_errors(&self) -> Option<&FitErrors> {
+        self.fit_errors.as_deref()
     }
 
     /// μ_K and μ_K′ at the sliding velocity with their errors, to first order in those of the
@@ -46,7 +46,7 @@ impl Setting {
     /// # Errors
     /// When the law is ill-posed.
     pub fn fitted_sliding(&self) -> Result<Option<FittedSliding>, ModelError> {
-        let Some(fitted) = self.fitted() else {
+        let Some(fitted) = self.fit_errors() else {
             return Ok(None);
         };
         let at = self.sliding_point()?;

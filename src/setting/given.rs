@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
 use super::amount::units_of;
+use super::fit_errors::{self, FitErrors};
 use super::fit_keys;
-use super::fitted::{self, Fitted};
 use super::formula_keys::{FormulaKeys, given_twice};
 use super::friction_table::GivenTable;
 use super::given_error::GivenError;
@@ -31,7 +31,7 @@ pub(super) struct GivenParameters {
     formula: FormulaKeys,
     law: Option<(LawKind, Range<usize>)>,
     table: GivenTable,
-    fitted: Option<Arc<Fitted>>,
+    fit_errors: Option<Arc<FitErrors>>,
     places: Vec<(Parameter, Range<usize>)>,
 }
 
@@ -218,7 +218,7 @@ impl GivenParameters {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
-                None if entry.key == fitted::FIT => fit = Some(entry),
+                None if entry.key == fit_errors::FIT => fit = Some(entry),
                 None if self.table.read(&entry, &self.units)? => {}
                 None => {
                     let of_formula = self.formula.unknown_key(&entry);
@@ -230,7 +230,7 @@ impl GivenParameters {
         let law = law.ok_or_else(missing)?;
         let kind = self.read_law(&law)?;
         let fit = fit.map(|fit| fit_keys::read(&fit, &kind)).transpose()?;
-        self.fitted = fit.map(Arc::new);
+        self.fit_errors = fit.map(Arc::new);
         self.law = Some((kind, law.span.clone()));
         Ok(())
     }
@@ -346,7 +346,7 @@ impl GivenParameters {
             setting.set(*parameter, *value);
         }
         self.formula.fill(&mut setting);
-        setting.fitted.clone_from(&self.fitted);
+        setting.fit_errors.clone_from(&self.fit_errors);
         setting
     }
 

@@ -13,7 +13,7 @@
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `fit_keys`: the keys of what a fit says
-//! - `fitted`: standard errors and correlations of a fitted law
+//! - `fit_errors`: standard errors and correlations of a fitted law
 //! - `fitted_sliding`: what they leave open of the slope where the block slides
 //! - `formula`: a friction law as an expression in the speed
 //! - `formula_keys`: the keys of `[friction]` that belong to a formula
@@ -63,8 +63,8 @@ pub(crate) mod command;
 mod curve_remark;
 mod expression;
 pub mod field;
+pub mod fit_errors;
 pub(crate) mod fit_keys;
-pub mod fitted;
 pub mod fitted_sliding;
 pub mod formula;
 pub(crate) mod formula_keys;

@@ -1,8 +1,8 @@
 //! A setting as text: the tables `[fixed]`, `[friction]` and `[units]`. Reading them gives the same
 //! setting.
 
-use super::fitted::{
-    BETWEEN_LAWS, CORRELATIONS, COVERAGE_FACTOR, FIT, Fitted, FittedNumber, PARAMETERS,
+use super::fit_errors::{
+    BETWEEN_LAWS, CORRELATIONS, COVERAGE_FACTOR, FIT, FitErrors, FittedNumber, PARAMETERS,
     STANDARD_ERRORS,
 };
 use super::formula_keys::UNITS;
@@ -68,7 +68,7 @@ pub(crate) fn setting_text(
                 text += &format!("{} = [{}]\n", column.name(), values.join(", "));
             }
         }
-        text += &setting.fitted().map_or_else(String::new, fit_text);
+        text += &setting.fit_errors().map_or_else(String::new, fit_text);
     }
     text += &units_text(units);
     text.trim_start().to_owned()
@@ -87,7 +87,7 @@ fn own_units(setting: &Setting) -> String {
 }
 
 /// What a fit says of the law, as the table `[friction.fit]`.
-fn fit_text(of: &Fitted) -> String {
+fn fit_text(of: &FitErrors) -> String {
     let list = |items: Vec<String>| format!("[{}]", items.join(", "));
     let numbers = |of: &[f64]| list(of.iter().map(|&value| number(value)).collect());
     let names = of.errors().filter_map(|(of, _)| match of {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::fitted::Fitted;
+use super::fit_errors::FitErrors;
 use super::formula::GivenFormula;
 use super::law_kind::{LawKind, OF_VELOCITY};
 use super::no_answer::NoAnswer;
@@ -28,7 +28,7 @@ pub struct Setting {
     values: [f64; Parameter::ALL.len()],
     subject: Subject,
     /// What a fit says of the friction law.
-    pub(super) fitted: Option<Arc<Fitted>>,
+    pub(super) fit_errors: Option<Arc<FitErrors>>,
 }
 
 /// What a setting describes.
@@ -49,7 +49,7 @@ impl Setting {
         Self {
             values,
             subject: Subject::Block(law),
-            fitted: None,
+            fit_errors: None,
         }
     }
 

@@ -4,8 +4,8 @@
 use serde_json::Value;
 
 use slipmap::answers::best::default_ranges;
-use slipmap::answers::of_fit::{error_of_fit, robust_to_fit};
-use slipmap::fit::{Fit, FitError, Wanted, fit};
+use slipmap::answers::robust_to_fit::{error_of_fit, robust_to_fit};
+use slipmap::fit::{FitError, FittedLaw, Wanted, fit};
 use slipmap::linear::best::SearchedGain;
 use slipmap::model::stop::Stop;
 use slipmap::setting::measured::{CurveOptions, Measured};
@@ -42,7 +42,7 @@ fn noisy(seed: u64) -> String {
     points(truth, seed, 0.01, (0.005, 0.3))
 }
 
-fn fitted(text: &str, law: Option<&'static str>) -> Result<Fit, FitError> {
+fn fitted(text: &str, law: Option<&'static str>) -> Result<FittedLaw, FitError> {
     let curve = Measured::read(text, &CurveOptions::default()).expect("a curve");
     let mut setting = Setting::new(None);
     setting.set(Parameter::V0, V0);
@@ -60,7 +60,7 @@ fn errors_of_the_slope_are_as_large_as_they_say() {
         let found = fitted(&noisy(seed), None).expect("a fit");
         let of = found.setting.fitted_sliding().unwrap().expect("errors");
         let off = (of.at.mu_prime - true_slope()).abs();
-        held += u64::from(off <= found.errors_in_interval * of.mu_prime_error);
+        held += u64::from(off <= found.errors_in_interval() * of.mu_prime_error);
         stable += u64::from(is_stable_in_truth(&found.setting));
     }
     println!("{held} intervals hold, {stable} settings are stable, of {seeds}");
@@ -386,6 +386,13 @@ fn few_points_leave_more_open() {
     let off = point["fit"]["worst_mu_prime"].as_f64().unwrap() - number("mu_prime");
     let errors = off.abs() / number("mu_prime_error");
     assert!((3.0..7.0).contains(&errors), "{errors}");
+    let best = "best --setting fit.toml --control velocity --robust fit --json";
+    let best = json(&folder, &best.split(' ').collect::<Vec<_>>());
+    let robust = &best["robust"];
+    let [errors, of_slope] = [&robust["standard_errors"], &robust["spreads"][2]];
+    let spread = errors.as_f64().unwrap() * number("mu_prime_error") / number("mu_prime").abs();
+    let wider = of_slope.as_f64().unwrap() / spread;
+    assert!((wider / (2.776 / 1.96) - 1.0).abs() < 2e-3, "{wider}");
 }
 
 /// Where laws are hardly told apart, the difference of their slopes is in the error, whatever the
@@ -465,6 +472,10 @@ fn a_fit_that_does_not_fit_is_told_in_its_place() {
         (
             "parameters = [\"mu0\"]\nstandard_errors = [-1]\ncorrelations = [[]]\n",
             "0 or more",
+        ),
+        (
+            "parameters = [\"mu0\"]\nstandard_errors = [1e308]\ncorrelations = [[]]\n",
+            "[bad.toml:10:19]",
         ),
         (
             "parameters = [\"mu0\"]\nstandard_errors = [1]\ncorrelations = [[1]]\n",

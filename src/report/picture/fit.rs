@@ -8,7 +8,7 @@ use super::scale::Scale;
 use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, suffix};
-use crate::fit::Fit;
+use crate::fit::FittedLaw;
 use crate::report::numbers::with_error;
 use crate::setting::Parameter;
 use crate::setting::measured::{Direction, MeasuredPoint};
@@ -26,7 +26,7 @@ const MARK: f64 = 2.0;
 #[derive(Debug, Clone, Copy)]
 pub struct FitPicture<'a> {
     /// What was fitted.
-    pub fit: &'a Fit,
+    pub fit: &'a FittedLaw,
     /// The points, by velocity.
     pub points: &'a [MeasuredPoint],
     /// The units of their velocities.
@@ -85,7 +85,7 @@ fn notes(of: &FitPicture) -> Vec<Rich> {
 fn scales(of: &FitPicture) -> (Scale, Scale) {
     let last = of.points.last().map_or(1.0, |point| point.speed);
     let v0 = of.fit.setting.get(Parameter::V0);
-    let reach = of.fit.errors_in_interval;
+    let reach = of.fit.errors_in_interval();
     let band = of.fit.band.iter();
     let ends = band.flat_map(|at| [at.mu_k - reach * at.error, at.mu_k + reach * at.error]);
     let all = of.points.iter().map(|point| point.mu_k).chain(ends);
@@ -99,7 +99,7 @@ fn scales(of: &FitPicture) -> (Scale, Scale) {
 
 fn draw_curve(of: &FitPicture, panel: &Panel, scene: &mut Scene) {
     let u = scene.unit();
-    let reach = of.fit.errors_in_interval;
+    let reach = of.fit.errors_in_interval();
     let within = |mu: f64| panel.up(mu).clamp(panel.area.top, panel.area.bottom);
     let slice = |at: &crate::fit::Band| {
         let ends = [at.mu_k - reach * at.error, at.mu_k + reach * at.error];

@@ -6,17 +6,14 @@
 //! as Student's distribution is at 95 %. The draws are points of a Sobol sequence, the same for
 //! every setting.
 
-use super::best::{BestSettings, Ranges, RobustSetting, robust_setting};
 use super::margins::beyond_letter;
 use super::sobol::normal;
-use crate::linear::best::{SearchedGain, UNPROVED, abscissa_at};
-use crate::linear::margins::Changes;
+use crate::linear::best::{UNPROVED, abscissa_at};
 use crate::linear::spectrum::RootFinder;
 use crate::model::stop::Stop;
 use crate::model::{ModelError, SlidingPoint};
-use crate::setting::fitted::{Fitted, NORMAL_95};
+use crate::setting::fit_errors::FitErrors;
 use crate::setting::fitted_sliding::FittedSliding;
-use crate::setting::no_answer::NoAnswer;
 use crate::setting::{Parameter, Setting};
 
 /// How many laws are drawn.
@@ -26,7 +23,7 @@ const SEED: u32 = 0;
 
 /// What the laws that were drawn make of a setting, in its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OfFit {
+pub struct DrawnLaws {
     /// μ_K and μ_K′ with their errors.
     pub sliding: FittedSliding,
     /// For how many of [`DRAWS`] laws all roots have the required decay rate.
@@ -48,7 +45,7 @@ pub struct Drawn {
     pub abscissa: f64,
 }
 
-impl OfFit {
+impl DrawnLaws {
     /// What the fit of a setting leaves open, for a required decay rate of `decay` ≥ 0; none where
     /// its law was not fitted. Once `stop` is set, the answer comes soon but is meaningless.
     ///
@@ -72,7 +69,10 @@ impl OfFit {
                 abscissa: f64::NEG_INFINITY,
             },
         };
-        let (mut finder, wider) = (RootFinder::default(), wider(setting));
+        let (mut finder, wider) = (
+            RootFinder::default(),
+            setting.fit_errors().map_or(1.0, FitErrors::wider),
+        );
         for number in 0..DRAWS {
             if stop.is_set() {
                 break;
@@ -95,94 +95,6 @@ impl OfFit {
         }
         Ok(Some(found))
     }
-}
-
-/// How many standard errors of a fit friction may be off at a robust setting, if any setting stands
-/// that: beyond lie 3 of 1000 values.
-pub const MOST_ERRORS: f64 = 3.0;
-/// How many times the number of errors is halved where no setting stands so many.
-const HALVINGS: u32 = 7;
-
-/// A search for the setting that is most robust against the errors of a fit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RobustToFit {
-    /// How many standard errors friction may be off there.
-    pub errors: f64,
-    /// The largest relative changes of gain, delay and μ′ that these are.
-    pub spread: Changes,
-    /// The best settings, whatever the errors.
-    pub best: BestSettings,
-    /// The robust setting; none where no setting stays stable.
-    pub robust: Option<RobustSetting>,
-}
-
-/// By how much errors of a fit to few points reach farther than those of a normal distribution.
-fn wider(setting: &Setting) -> f64 {
-    let factor = setting.fitted().map(Fitted::coverage_factor);
-    factor.map_or(1.0, |factor| factor / NORMAL_95)
-}
-
-/// The relative changes of gain, delay and μ′ by which friction may be off after a fit: one
-/// standard error, however few the points are. None where the law was not fitted. Where the load is
-/// controlled, μ_K is part of the gain. Delays are as they are.
-///
-/// # Errors
-/// When the law is ill-posed.
-pub fn error_of_fit(setting: &Setting, gain: SearchedGain) -> Result<Option<Changes>, ModelError> {
-    let Some(of) = setting.fitted_sliding()? else {
-        return Ok(None);
-    };
-    let load = gain == SearchedGain::Load || setting.get(Parameter::AlphaN) != 0.0;
-    let of_gain = match load {
-        true => of.mu_k_error / of.at.mu_k,
-        false => 0.0,
-    };
-    Ok(Some([
-        of_gain,
-        0.0,
-        of.mu_prime_error / of.at.mu_prime.abs(),
-    ]))
-}
-
-/// The setting within `ranges` that decays fastest when friction is off by [`MOST_ERRORS`] standard
-/// errors of its fit, of which `error` is one; where no setting stands that, by as many as some
-/// setting stands. Once `stop` is set, the answer comes soon but is meaningless.
-///
-/// # Errors
-/// As [`robust_setting`].
-pub fn robust_to_fit(
-    setting: &Setting,
-    gain: SearchedGain,
-    ranges: &Ranges,
-    error: Changes,
-    stop: &Stop,
-) -> Result<RobustToFit, NoAnswer> {
-    let with = |errors: f64| -> Result<RobustToFit, NoAnswer> {
-        let spread = error.map(|part| errors * part);
-        let (best, robust) = robust_setting(setting, gain, ranges, spread, stop)?;
-        Ok(RobustToFit {
-            errors,
-            spread,
-            best,
-            robust,
-        })
-    };
-    let mut found = with(MOST_ERRORS)?;
-    if found.robust.is_some() {
-        return Ok(found);
-    }
-    let (mut stands, mut not) = (0.0, MOST_ERRORS);
-    for _ in 0..HALVINGS {
-        let next = with(0.5 * (stands + not))?;
-        match next.robust {
-            Some(_) => {
-                stands = next.errors;
-                found = next;
-            }
-            None => not = next.errors,
-        }
-    }
-    Ok(found)
 }
 
 /// The friction of a draw, with errors so many times as wide.

@@ -1,6 +1,6 @@
 //! What a fit says of a friction law beside its parameters: their standard errors and correlations.
 
-use super::parameter::Parameter;
+use super::parameter::{LARGEST, Parameter};
 
 /// The key of `[friction]` under which a fit stands.
 pub(crate) const FIT: &str = "fit";
@@ -25,7 +25,7 @@ pub enum FittedNumber {
 
 /// The standard errors and correlations of the fitted numbers of a friction law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
+pub struct FitErrors {
     numbers: Vec<FittedNumber>,
     /// In the units of the numbers.
     standard_errors: Vec<f64>,
@@ -35,7 +35,7 @@ pub struct Fitted {
     between_laws: f64,
 }
 
-impl Fitted {
+impl FitErrors {
     /// The errors of some numbers, as many of them as standard errors. Row i of the correlations
     /// has those of number i with all numbers before it, the first row none.
     ///
@@ -54,11 +54,9 @@ impl Fitted {
                 format!("{given} numbers for {count} that were fitted"),
             ));
         }
-        if !standard_errors.iter().all(|e| e.is_finite() && *e >= 0.0) {
-            return Err((
-                STANDARD_ERRORS,
-                "expected finite numbers of 0 or more".to_owned(),
-            ));
+        if !standard_errors.iter().all(|e| (0.0..=LARGEST).contains(e)) {
+            let why = "expected numbers of 0 or more, at most 1e12".to_owned();
+            return Err((STANDARD_ERRORS, why));
         }
         let triangle = correlations
             .iter()
@@ -119,6 +117,13 @@ impl Fitted {
     #[must_use]
     pub fn coverage_factor(&self) -> f64 {
         self.coverage_factor
+    }
+
+    /// How many times as far the errors reach as those of a normal distribution, of which 95 % lie
+    /// within [`NORMAL_95`] of them: 1, and more after few points.
+    #[must_use]
+    pub fn wider(&self) -> f64 {
+        self.coverage_factor / NORMAL_95
     }
 
     /// The fitted numbers with their standard errors.
