@@ -79,167 +79,84 @@ async fn answer(
     Ok(room.send(request.content_type(), bytes))
 }
 
-/// Cells and curves of a sweep
-///
-/// The text is a sweep file of few cells: 4,000,000 of the closed form, 1,000,000 whose roots, or
-/// 1,000 whose motions are followed. The answer is a head (`ChartHead`) and arrays, see the
-/// description of this interface.
-#[utoipa::path(
-    post,
-    path = "/api/v1/chart",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::CHART),
-    ),
-    responses(
-        (status = 200, description = "A chart", body = Encoded,
-            content_type = "application/octet-stream"),
-        Denied,
-        Refused,
-    ),
-)]
-async fn chart(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    answer(served, explore::Request::Chart, text(&headers, &body)).await
+/// A handler of texts: its comments, name, path, request and example, and what it answers.
+macro_rules! of_text {
+    (
+        $(#[$comment:meta])*
+        fn $name:ident: $path:literal, $request:ident, $example:ident => $($answer:tt)*
+    ) => {
+        $(#[$comment])*
+        #[utoipa::path(
+            post,
+            path = $path,
+            tag = "computed",
+            request_body(
+                content = String,
+                content_type = "application/toml",
+                example = json!(examples::$example),
+            ),
+            responses((status = 200, $($answer)*), Denied, Refused),
+        )]
+        async fn $name(
+            State(served): State<Served>,
+            headers: HeaderMap,
+            body: Bytes,
+        ) -> Result<Response, Problem> {
+            answer(served, explore::Request::$request, text(&headers, &body)).await
+        }
+    };
 }
 
-/// Linear stability at a point
-///
-/// The text has the tables `[fixed]`, `[friction]` and `[units]` of a sweep file.
-#[utoipa::path(
-    post,
-    path = "/api/v1/point",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::POINT),
-    ),
-    responses(
-        (status = 200, description = "The point", body = WithCommand<BlockPoint>),
-        Denied,
-        Refused,
-    ),
-)]
-async fn point(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    answer(served, explore::Request::Point, text(&headers, &body)).await
+of_text! {
+    /// Cells and curves of a sweep
+    ///
+    /// The text is a sweep file of few cells: 4,000,000 of the closed form, 1,000,000 whose roots, or
+    /// 1,000 whose motions are followed. The answer is a head (`ChartHead`) and arrays, see the
+    /// description of this interface.
+    fn chart: "/api/v1/chart", Chart, CHART =>
+    description = "A chart", body = Encoded, content_type = "application/octet-stream"
 }
 
-/// The critical velocity at a point, by the protocol `follow`
-///
-/// The text has a friction law and no v0.
-#[utoipa::path(
-    post,
-    path = "/api/v1/vc",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::VC),
-    ),
-    responses(
-        (status = 200, description = "How stick-slip ends", body = WithCommand<CriticalVelocity>),
-        Denied,
-        Refused,
-    ),
-)]
-async fn vc(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    let text = text(&headers, &body);
-    answer(served, explore::Request::CriticalVelocity, text).await
+of_text! {
+    /// Linear stability at a point
+    ///
+    /// The text has the tables `[fixed]`, `[friction]` and `[units]` of a sweep file.
+    fn point: "/api/v1/point", Point, POINT =>
+    description = "The point", body = WithCommand<BlockPoint>
 }
 
-/// The motion of a case
-///
-/// The text is a case file. Of more than 20,000 samples every second one is left out until they
-/// are fewer, but for those at events. The answer is a head (`MotionHead`) and arrays, see the
-/// description of this interface.
-#[utoipa::path(
-    post,
-    path = "/api/v1/motion",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::MOTION),
-    ),
-    responses(
-        (status = 200, description = "A motion", body = Encoded,
-            content_type = "application/octet-stream"),
-        Denied,
-        Refused,
-    ),
-)]
-async fn motion(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    answer(served, explore::Request::Motion, text(&headers, &body)).await
+of_text! {
+    /// The critical velocity at a point, by the protocol `follow`
+    ///
+    /// The text has a friction law and no v0.
+    fn vc: "/api/v1/vc", CriticalVelocity, VC =>
+    description = "How stick-slip ends", body = WithCommand<CriticalVelocity>
 }
 
-/// A friction law as a curve
-///
-/// The text has the table `[friction]`, and may have v0 in `[fixed]`, and `[units]`.
-#[utoipa::path(
-    post,
-    path = "/api/v1/law",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::LAW),
-    ),
-    responses(
-        (status = 200, description = "The law", body = LawCurve),
-        Denied,
-        Refused,
-    ),
-)]
-async fn law(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    answer(served, explore::Request::Law, text(&headers, &body)).await
+of_text! {
+    /// The motion of a case
+    ///
+    /// The text is a case file. Of more than 20,000 samples every second one is left out until they
+    /// are fewer, but for those at events. The answer is a head (`MotionHead`) and arrays, see the
+    /// description of this interface.
+    fn motion: "/api/v1/motion", Motion, MOTION =>
+    description = "A motion", body = Encoded, content_type = "application/octet-stream"
 }
 
-/// The parameters of a friction law that is a formula
-///
-/// The text has the law and its expression in the table `[friction]`; nothing else is read.
-#[utoipa::path(
-    post,
-    path = "/api/v1/formula",
-    tag = "computed",
-    request_body(
-        content = String,
-        content_type = "application/toml",
-        example = json!(examples::FORMULA),
-    ),
-    responses(
-        (status = 200, description = "Its parameters", body = KnownFormula),
-        Denied,
-        Refused,
-    ),
-)]
-async fn formula(
-    State(served): State<Served>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Result<Response, Problem> {
-    answer(served, explore::Request::Formula, text(&headers, &body)).await
+of_text! {
+    /// A friction law as a curve
+    ///
+    /// The text has the table `[friction]`, and may have v0 in `[fixed]`, and `[units]`.
+    fn law: "/api/v1/law", Law, LAW =>
+    description = "The law", body = LawCurve
+}
+
+of_text! {
+    /// The parameters of a friction law that is a formula
+    ///
+    /// The text has the law and its expression in the table `[friction]`; nothing else is read.
+    fn formula: "/api/v1/formula", Formula, FORMULA =>
+    description = "Its parameters", body = KnownFormula
 }
 
 /// All parameters, friction laws and fields
