@@ -24,6 +24,8 @@ const NO_LAW: f64 = 1e6;
 const STEP: f64 = 1e-6;
 /// Steps of Gauss and Newton after the search, which stops as soon as the sum hardly falls.
 const POLISH: usize = 4;
+/// The most points by which starts are compared.
+const AT_FIRST: usize = 1000;
 /// Where less than this is left of 1 − H_ii, a point alone determines a number, and nothing tells
 /// the error of that.
 const LEAST_LEFT: f64 = 0.02;
@@ -63,7 +65,6 @@ impl Problem<'_> {
 
     /// A central difference quotient for each number, one of one side at the end of its range.
     fn slopes(&self) -> Option<DMatrix<f64>> {
-        let here = self.at(&self.values)?;
         let columns: Option<Vec<DVector<f64>>> = (0..self.values.len())
             .map(|i| {
                 let step = STEP * self.values[i].abs().max(STEP);
@@ -74,8 +75,8 @@ impl Problem<'_> {
                 };
                 Some(match (moved(-step), moved(step)) {
                     (Some(below), Some(above)) => (above - below) / (2.0 * step),
-                    (None, Some(above)) => (above - &here) / step,
-                    (Some(below), None) => (&here - below) / step,
+                    (None, Some(above)) => (above - moved(0.0)?) / step,
+                    (Some(below), None) => (moved(0.0)? - below) / step,
                     (None, None) => return None,
                 })
             })
@@ -109,10 +110,31 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
 impl Minimum {
     /// The lowest minimum that is found from the starts of a candidate; none where the search does
-    /// not end in one.
+    /// not end in one. Of many points some are enough to find which start is best.
     pub(super) fn of(candidate: &Candidate, points: Weighted) -> Option<Self> {
-        let starts = candidate.starts(points.seen).into_iter();
-        let found = starts.filter_map(|start| Self::from(candidate, points, start));
+        let starts = candidate.starts(points.seen);
+        let every = points.seen.speeds.len().div_ceil(AT_FIRST);
+        if every == 1 {
+            return Self::lowest(candidate, points, &starts);
+        }
+        let some = |of: &[f64]| -> Vec<f64> { of.iter().copied().step_by(every).collect() };
+        let [speeds, mu_k, deviations] =
+            [points.seen.speeds, points.seen.mu_k, points.deviations].map(some);
+        let some = Weighted {
+            seen: Seen {
+                speeds: &speeds,
+                mu_k: &mu_k,
+            },
+            deviations: &deviations,
+        };
+        let best = Self::lowest(candidate, some, &starts);
+        let starts = best.map_or(starts, |best| vec![best.values]);
+        Self::lowest(candidate, points, &starts)
+    }
+
+    fn lowest(candidate: &Candidate, points: Weighted, starts: &[Vec<f64>]) -> Option<Self> {
+        let found = starts.iter().cloned();
+        let found = found.filter_map(|start| Self::from(candidate, points, start));
         found.min_by(|one, other| one.sum.total_cmp(&other.sum))
     }
 
@@ -127,8 +149,9 @@ impl Minimum {
         if !report.termination.was_successful() {
             return None;
         }
+        let mut residuals = problem.at(&problem.values)?;
         for _ in 0..POLISH {
-            let (residuals, slopes) = (problem.at(&problem.values)?, problem.slopes()?);
+            let slopes = problem.slopes()?;
             let Some(step) = Normal::of(&slopes).map(|of| of.solve(&slopes.tr_mul(&residuals)))
             else {
                 break;
@@ -137,15 +160,12 @@ impl Minimum {
             let better = problem
                 .at(&values)
                 .filter(|r| r.norm_squared() <= residuals.norm_squared());
-            if better.is_none() {
-                break;
-            }
-            problem.values = values;
+            let Some(better) = better else { break };
+            (problem.values, residuals) = (values, better);
         }
-        let sum = problem.at(&problem.values)?.norm_squared();
         Some(Self {
             values: problem.values.as_slice().to_vec(),
-            sum,
+            sum: residuals.norm_squared(),
         })
     }
 
