@@ -357,20 +357,15 @@ impl Recorder {
 impl Sample {
     /// The state of a motion, `s` after the beginning of its last step.
     fn of(motion: &Motion, units: CaseUnits, begun: Begun, s: f64) -> Self {
-        let (step, p) = (motion.last_step(), motion.parameters());
+        let step = motion.last_step();
         let (u, a, n) = step.state(s);
-        let difference = if begun.t >= p.switch_on {
-            step.fed_back(s)
-        } else {
-            0.0
-        };
-        let limits = p.feedback.limits;
+        let limits = motion.parameters().feedback.limits;
         Self {
             t: (begun.t + s) * units.time,
             x: (begun.x + step.displacement(s)) * units.length,
             x_dot: u * units.velocity,
             a: a * units.length,
-            v: limits.velocity_of(p.v0 + p.feedback.gains.alpha_v * difference) * units.velocity,
+            v: limits.velocity_of(step.velocity(s)) * units.velocity,
             n: limits.load_of(n) * units.force,
             mode: begun.mode,
         }

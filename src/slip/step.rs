@@ -26,6 +26,8 @@ pub struct Step {
     pub(super) late: Coefficients,
     /// Whether the feedback has a latency.
     pub(super) is_late: bool,
+    /// The pulling velocity without S, and the part of S that is added to it.
+    pub(super) pull: (f64, f64),
 }
 
 impl Step {
@@ -41,6 +43,7 @@ impl Step {
         delayed: [0.0; MOST_ORDER + 1],
         late: [0.0; MOST_ORDER + 1],
         is_late: false,
+        pull: (0.0, 0.0),
     };
 
     pub(super) fn range(c: &Coefficients, order: usize) -> &[f64] {
@@ -59,6 +62,13 @@ impl Step {
     pub fn state(&self, s: f64) -> (f64, f64, f64) {
         let at = |c| value(Self::range(c, self.order), s);
         (at(&self.u), at(&self.a), at(&self.n))
+    }
+
+    /// The pulling velocity at `s`.
+    #[must_use]
+    pub fn velocity(&self, s: f64) -> f64 {
+        let (v0, alpha_v) = self.pull;
+        v0 + alpha_v * self.fed_back(s)
     }
 
     /// S at `s`, which is fed back: a(t) − a(t−τ), with its memory and latency. Meaningless before

@@ -114,37 +114,26 @@ impl Friction {
 
     /// μ_K, by a piece that goes on smoothly beyond its bounds.
     pub(crate) fn coefficient(&self, piece: usize, speed: f64) -> f64 {
-        match &self.law {
-            Law::Coulomb { mu0 } => *mu0,
-            Law::Weakening { mu0, v_s } => mu0 / (1.0 + speed / v_s),
-            Law::Stribeck { mu0, v_s } => {
-                let q = speed / v_s;
-                mu0 + (self.mu_s - mu0) * (-q * q).exp()
-            }
-            Law::Formula {
-                shape,
-                mu0,
-                v_s,
-                sigma,
-            } => {
-                let (fall, _) = shape.value_and_slope(speed / v_s);
-                mu0 + (self.mu_s - mu0) * fall + sigma * speed
-            }
-            Law::Table(curve) => curve.value(piece, speed),
-        }
+        self.value_and_slope(piece, speed).0
     }
 
     /// dμ_K/dv.
     pub(crate) fn slope(&self, piece: usize, speed: f64) -> f64 {
+        self.value_and_slope(piece, speed).1
+    }
+
+    #[inline]
+    fn value_and_slope(&self, piece: usize, speed: f64) -> (f64, f64) {
         match &self.law {
-            Law::Coulomb { .. } => 0.0,
+            Law::Coulomb { mu0 } => (*mu0, 0.0),
             Law::Weakening { mu0, v_s } => {
                 let q = 1.0 + speed / v_s;
-                -mu0 / (v_s * q * q)
+                (mu0 / q, -mu0 / (v_s * q * q))
             }
             Law::Stribeck { mu0, v_s } => {
                 let q = speed / v_s;
-                -2.0 * (self.mu_s - mu0) * q / v_s * (-q * q).exp()
+                let fall = (self.mu_s - mu0) * (-q * q).exp();
+                (mu0 + fall, -2.0 * q / v_s * fall)
             }
             Law::Formula {
                 shape,
@@ -152,10 +141,14 @@ impl Friction {
                 v_s,
                 sigma,
             } => {
-                let (_, slope) = shape.value_and_slope(speed / v_s);
-                (self.mu_s - mu0) * slope / v_s + sigma
+                let (fall, slope) = shape.value_and_slope(speed / v_s);
+                let height = self.mu_s - mu0;
+                (
+                    mu0 + height * fall + sigma * speed,
+                    height * slope / v_s + sigma,
+                )
             }
-            Law::Table(curve) => curve.slope(piece, speed),
+            Law::Table(curve) => (curve.value(piece, speed), curve.slope(piece, speed)),
         }
     }
 

@@ -19,6 +19,7 @@ impl Motion {
     /// The delayed polynomial has to be filled before.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
+        self.step.pull = (control.v0, control.alpha_v);
         let load = control.load + control.alpha_n * self.step.fed_back_at_start(self.a);
         let mut length = self.step_of_scale(control, load).min(limit);
         let reads = self.parameters.feedback.echoes();
