@@ -3,9 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::expression::{
-    Function, Misread, Op, Read, Tape, Written, functions, names_in, read_number,
-};
+use super::expression::{Function, Misread, Op, Read, Tape, Written, names_in, read_number};
 use super::keys::FRICTION_TABLE;
 use super::map_names;
 use super::parameter::{Group, LARGEST, Parameter};
@@ -98,15 +96,6 @@ impl FormulaModel {
         }
         let names: Vec<&str> = [SPEED].into_iter().chain(words).collect();
         let tape = read_number(text, &names)?;
-        let kinks = tape
-            .ops()
-            .iter()
-            .any(|op| matches!(op, Op::Smaller | Op::Larger));
-        if kinks {
-            let known = functions().filter(|name| !matches!(*name, "min" | "max"));
-            return Err(Misread::at(0..text.len(), "min and max have kinks")
-                .help(format!("known: {}", known.collect::<Vec<_>>().join(", "))));
-        }
         let known = meanings.iter().filter_map(|name| match name {
             Name::Known(parameter) => Some(*parameter),
             Name::Own(_) => None,

@@ -4,6 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::amount::Amount;
 use super::expression::Written;
 use super::formula::{EXAMPLE, GivenFormula};
 use super::law_kind::LawKind;
@@ -35,8 +36,10 @@ impl FormulaKeys {
     /// The formula in `[friction]` of `document`, whose whole text is `text`. It is read before all
     /// else: axes are of its parameters.
     pub(super) fn ahead(document: &Document, text: &str, units: &Units) -> Self {
-        let entries = document.ahead("friction").map(Entry::table);
-        let read = entries.and_then(|entries| read_formula(&entries.ok()?, text, units));
+        let table = |key: &str| document.ahead(key)?.table().ok();
+        let axes = table("axes").unwrap_or_default();
+        let friction = table("friction");
+        let read = friction.and_then(|friction| read_formula(&friction, &axes, text, units));
         let (formula, misread) = match read.transpose() {
             Ok(formula) => (formula, None),
             Err(error) => (None, Some(error)),
@@ -189,8 +192,14 @@ pub(crate) fn formula_of(text: &str) -> Result<GivenFormula, SpecError> {
     formula.map(|(formula, _)| formula).ok_or_else(none)
 }
 
-/// The formula of `[friction]`, with the place of its expression; none of another law.
-fn read_formula(friction: &[Entry], text: &str, units: &Units) -> Option<ReadFormula> {
+/// The formula of `[friction]`, with the place of its expression; none of another law. Its own
+/// parameters have the units in which they are given, there or as `axes`, or those of a table.
+fn read_formula(
+    friction: &[Entry],
+    axes: &[Entry],
+    text: &str,
+    units: &Units,
+) -> Option<ReadFormula> {
     let of = |key: &str| friction.iter().find(|entry| entry.key == key);
     let is_formula = |law: &&Entry| law.string().is_ok_and(|name| name == LawKind::FORMULA);
     of("law").filter(is_formula)?;
@@ -198,6 +207,13 @@ fn read_formula(friction: &[Entry], text: &str, units: &Units) -> Option<ReadFor
     let written = Written::of(key, of(key)?, text);
     Some(written.and_then(|written| {
         let mut formula = GivenFormula::written(&written)?;
+        for entry in friction.iter().chain(axes) {
+            let amount = |text: &str| Amount::read(text)?.ok().filter(Amount::needs_units);
+            let own = formula.own_named(entry.key).cloned();
+            if let Some((own, amount)) = own.zip(entry.in_strings(&amount)) {
+                formula.measure(&own, amount.dimension(), units);
+            }
+        }
         if let Some(table) = of(UNITS) {
             read_units(table, &mut formula, units)?;
         }

@@ -208,7 +208,7 @@ pub(crate) const FRICTION_TABLE: [Key; 6] = [
     key(
         "units",
         "a table of units, such as { sigma = \"s/m\" }",
-        "numbers without unit",
+        "those in which the parameters are given",
         "with law = \"formula\": the units of its own parameters, made of those of the file",
     ),
     key(

@@ -225,9 +225,9 @@ impl<'t> Entry<'t> {
         }
     }
 
-    /// Whether a string of the value passes a test: the value itself, or one within it.
-    pub(crate) fn any_string(&self, test: &impl Fn(&str) -> bool) -> bool {
-        any_string(self.value, test)
+    /// What is found first in a string of the value: in the value itself, or in one within it.
+    pub(crate) fn in_strings<T>(&self, find: &impl Fn(&str) -> Option<T>) -> Option<T> {
+        in_strings(self.value, find)
     }
 
     /// A string on one line, no longer than pictures have room for.
@@ -242,12 +242,13 @@ impl<'t> Entry<'t> {
     }
 }
 
-fn any_string(value: &DeValue, test: &impl Fn(&str) -> bool) -> bool {
+fn in_strings<T>(value: &DeValue, find: &impl Fn(&str) -> Option<T>) -> Option<T> {
+    let within = |value: &Spanned<DeValue>| in_strings(value.get_ref(), find);
     match value {
-        DeValue::String(text) => test(text),
-        DeValue::Array(of) => of.iter().any(|value| any_string(value.get_ref(), test)),
-        DeValue::Table(of) => of.values().any(|value| any_string(value.get_ref(), test)),
-        _ => false,
+        DeValue::String(text) => find(text),
+        DeValue::Array(of) => of.iter().find_map(within),
+        DeValue::Table(of) => of.values().find_map(within),
+        _ => None,
     }
 }
 

@@ -74,7 +74,7 @@ fn a_formula_says_what_the_law_of_its_form_says() {
 fn own_parameters_are_axes_of_maps() {
     let axes = "fields = [\"n_unstable\", \"abscissa\"]\n[axes]\ndelta = [0.5, 1, 2]\n\
         sigma = [0, \"100 s/km\"]\ntau = [0.2, 0.6, 1.4]\n[fixed]\nv0 = \"150 mm/s\"\n\
-        alpha_n = -2\n[friction]\nunits = { sigma = \"s/m\" }\n";
+        alpha_n = -2\n[friction]\n";
     let folder = Folder::with(&[("map.toml", &(axes.to_owned() + LAW))]);
     let run = |args: &[&str]| {
         let output = folder.run(args);
@@ -145,7 +145,7 @@ fn mistakes_in_formulas_are_told_in_their_place() {
         (format!("{LAW}{ok}sigma = 2\n"), "sigma"),
         (
             format!("{LAW}{ok}").replace("exp", "exq"),
-            "did you mean `exp`?",
+            "did you mean `exp`? known: sqrt, exp, ln, log, sin, cos, sinh, cosh, tanh, atan",
         ),
         (
             format!("{LAW}{ok}").replace("sigma*v", "mass*v"),
@@ -176,6 +176,10 @@ fn mistakes_in_formulas_are_told_in_their_place() {
             "1 s/mm is 1000 m-1 s",
         ),
         (
+            format!("{LAW}units = {{ sigma = \"s2/m\" }}\n{ok}").replace("0.1", "\"0.1 s/m\""),
+            "s/m is no unit of",
+        ),
+        (
             format!("{LAW}{ok}units = {{ sgima = \"s/m\" }}\n"),
             "did you mean `sigma`?",
         ),
@@ -187,6 +191,7 @@ fn mistakes_in_formulas_are_told_in_their_place() {
         let words = error.split_whitespace().filter(|word| *word != "│");
         let one_line = words.collect::<Vec<_>>().join(" ");
         assert!(one_line.contains(says), "{law}: {error}");
+        assert!(!one_line.contains(", min"), "{law}: {error}");
     }
 }
 
@@ -418,15 +423,20 @@ fn margins_of_v0_end_where_steep_laws_become_unstable() {
     }
 }
 
-/// A parameter with a unit is one in the declared units, or the SI; a saved setting keeps it.
+/// A parameter with a unit is one in the declared units, or the SI, in flags and files alike; a
+/// saved setting keeps it.
 #[test]
-fn own_parameters_have_units_in_flags() {
-    let folder = Folder::new();
+fn own_parameters_have_the_units_they_are_given_in() {
+    let file = "[fixed]\nv0 = \"500 mm/s\"\ntau = 0\n[friction]\nlaw = \"formula\"\n\
+        mu_k = \"mu0-sigma*v\"\nmu0 = 0.3\nsigma = \"100 s/km\"\n";
+    let folder = Folder::with(&[("given.toml", file)]);
     let law = ["--friction", "formula", "--mu-k=mu0-sigma*v", "--mu0=0.3"];
     let told = |more: &[&str]| out(&folder.run(&[&["point"], &law[..], more].concat()));
     let si = told(&["--set", "sigma=0.1 s/m", "--v0=500mm/s"]);
     assert!(si.contains("sigma = 0.1 m-1 s;"), "{si}");
     assert!(si.contains("mu_prime         -0.1 m-1 s"), "{si}");
+    let given = out(&folder.run(&["point", "--setting", "given.toml"]));
+    assert_eq!(given, si);
     let slow = told(&["--set=sigma=100s/km", "--units=N,mm,s", "--v0=500"]);
     assert!(slow.contains("sigma = 0.0001 mm-1 s;"), "{slow}");
     assert!(slow.contains("mu_k             0.25\n"), "{slow}");

@@ -36,8 +36,13 @@ const OF_SEVERAL: [(&str, Op); 2] = [("min", Op::Smaller), ("max", Op::Larger)];
 
 /// The names of functions.
 pub(in crate::setting) fn functions() -> impl Iterator<Item = &'static str> {
-    let of_one = Function::NAMED.iter().map(|(name, _)| *name);
-    of_one.chain(OF_SEVERAL.map(|(name, _)| name))
+    let of_several = OF_SEVERAL.iter().map(|(name, _)| *name);
+    smooth_functions().chain(of_several)
+}
+
+/// The names of functions without kinks.
+fn smooth_functions() -> impl Iterator<Item = &'static str> {
+    Function::NAMED.iter().map(|(name, _)| *name)
 }
 
 /// The operation of a function, and whether it takes several numbers.
@@ -68,7 +73,8 @@ pub(in crate::setting) fn names_in(text: &str) -> Vec<&str> {
 #[derive(Debug, Clone)]
 struct State<'n> {
     names: &'n [&'n str],
-    /// The name of the variable of polynomials; none where a number is read.
+    /// The name of the variable of polynomials; none where a number is read, which is to depend
+    /// on the names without kinks.
     variable: Option<&'static str>,
     depth: usize,
     /// Places of the signs whose operands are being read.
@@ -199,27 +205,39 @@ fn named(input: &mut Input) -> Read<Part> {
     let before = input.checkpoint();
     multispace0.parse_next(input)?;
     let called = ahead(input).0 == Some('(');
-    if let Some(of) = function_of(name) {
-        return function(input, name, of, called, place);
-    }
-    input.reset(&before);
     let State {
         names, variable, ..
-    } = &input.state;
-    let is_variable = *variable == Some(name);
+    } = input.state;
+    let known_functions = || -> Vec<&str> {
+        match variable {
+            Some(_) => functions().collect(),
+            None => smooth_functions().collect(),
+        }
+    };
+    match function_of(name) {
+        Some((_, true)) if variable.is_none() => {
+            let known = known_functions().join(", ");
+            return Err(
+                Misread::at(place, "min and max have kinks").help(format!("known: {known}"))
+            );
+        }
+        Some(of) => return function(input, name, of, called, place),
+        None => input.reset(&before),
+    }
+    let is_variable = variable == Some(name);
     match names.iter().position(|known| *known == name) {
         Some(_) if called => Err(times_is_written(place)),
         None if is_variable && called => Err(times_is_written(place)),
         Some(index) => Ok(Part::of(Op::Value(index as u8), None, place)),
         None if is_variable => Ok(Part::of(Op::Variable, Some(1), place)),
         None if called => {
-            let meant = did_you_mean(name, functions());
-            let known = functions().collect::<Vec<_>>().join(", ");
+            let meant = did_you_mean(name, known_functions());
+            let known = known_functions().join(", ");
             Err(Misread::at(place, format!("unknown function `{name}`"))
                 .help(format!("{meant}known: {known}")))
         }
         None => {
-            let known = || variable.iter().copied().chain(names.iter().copied());
+            let known = || variable.into_iter().chain(names.iter().copied());
             let meant = did_you_mean(name, known());
             let known = known().collect::<Vec<_>>().join(", ");
             Err(
