@@ -110,8 +110,8 @@ macro_rules! of_text {
 of_text! {
     /// Cells and curves of a sweep
     ///
-    /// The text is a sweep file of few cells: 4,000,000 of the closed form, 1,000,000 whose roots, or
-    /// 1,000 whose motions are followed. The answer is a head (`ChartHead`) and arrays, see the
+    /// The text is a sweep file of few cells: 4,000,000 of the closed form, 1,000,000 whose roots,
+    /// or 1,000 whose motions are followed. The answer is a head (`ChartHead`) and arrays, see the
     /// description of this interface.
     fn chart: "/api/v1/chart", Chart, CHART =>
     description = "A chart", body = Encoded, content_type = "application/octet-stream"

@@ -34,15 +34,11 @@ pub(in crate::setting) const VARIABLE: &str = "s";
 /// The functions of several numbers.
 const OF_SEVERAL: [(&str, Op); 2] = [("min", Op::Smaller), ("max", Op::Larger)];
 
-/// The names of functions.
-pub(in crate::setting) fn functions() -> impl Iterator<Item = &'static str> {
-    let of_several = OF_SEVERAL.iter().map(|(name, _)| *name);
-    smooth_functions().chain(of_several)
-}
-
-/// The names of functions without kinks.
-fn smooth_functions() -> impl Iterator<Item = &'static str> {
-    Function::NAMED.iter().map(|(name, _)| *name)
+/// The names of functions; those that have `kinks` only if asked for.
+pub(in crate::setting) fn functions(kinks: bool) -> impl Iterator<Item = &'static str> {
+    let of_several = OF_SEVERAL.iter().filter(move |_| kinks);
+    let of_one = Function::NAMED.iter().map(|(name, _)| *name);
+    of_one.chain(of_several.map(|(name, _)| *name))
 }
 
 /// The operation of a function, and whether it takes several numbers.
@@ -61,7 +57,7 @@ pub(in crate::setting) fn names_in(text: &str) -> Vec<&str> {
         let after = word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
         let called = text[after..].trim_start().starts_with('(');
         let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-        let of_function = functions().any(|known| known == word);
+        let of_function = functions(true).any(|known| known == word);
         if begins && !called && !of_function && !names.contains(&word) {
             names.push(word);
         }
@@ -208,18 +204,11 @@ fn named(input: &mut Input) -> Read<Part> {
     let State {
         names, variable, ..
     } = input.state;
-    let known_functions = || -> Vec<&str> {
-        match variable {
-            Some(_) => functions().collect(),
-            None => smooth_functions().collect(),
-        }
-    };
+    let functions: Vec<&str> = functions(variable.is_some()).collect();
+    let known = format!("known: {}", functions.join(", "));
     match function_of(name) {
         Some((_, true)) if variable.is_none() => {
-            let known = known_functions().join(", ");
-            return Err(
-                Misread::at(place, "min and max have kinks").help(format!("known: {known}"))
-            );
+            return Err(Misread::at(place, "min and max have kinks").help(known));
         }
         Some(of) => return function(input, name, of, called, place),
         None => input.reset(&before),
@@ -231,10 +220,9 @@ fn named(input: &mut Input) -> Read<Part> {
         Some(index) => Ok(Part::of(Op::Value(index as u8), None, place)),
         None if is_variable => Ok(Part::of(Op::Variable, Some(1), place)),
         None if called => {
-            let meant = did_you_mean(name, known_functions());
-            let known = known_functions().join(", ");
+            let meant = did_you_mean(name, functions);
             Err(Misread::at(place, format!("unknown function `{name}`"))
-                .help(format!("{meant}known: {known}")))
+                .help(format!("{meant}{known}")))
         }
         None => {
             let known = || variable.into_iter().chain(names.iter().copied());

@@ -170,7 +170,7 @@ fn check_name(entry: &Entry) -> Result<(), SpecError> {
     let why = match name {
         VARIABLE => "it is the variable of the polynomials",
         _ if name == Parameter::Tau.name() => "it is the delay, which every system has",
-        _ if functions().any(|known| known == name) => "it is a function",
+        _ if functions(true).any(|known| known == name) => "it is a function",
         _ if map_names::taken().any(|taken| taken == name) => "maps have a variable of that name",
         _ => return Ok(()),
     };
