@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The licences of all that is in the program with libhdf5 in it, as one text on standard output:
+# The licences of all that is in the program with libhdf5 in it, or in the module of the Python package, as one text on standard
+# output:
 #
-#   scripts/licences.sh
+#   scripts/licences.sh [program | module]      of the program unless the module is named
 #
 # First a line for every crate that is linked, then their texts, equal ones once: libhdf5, zlib and a font are parts of crates.
 # uPlot, in the page of the browser, comes last. scripts/release.sh puts the text into the packages.
@@ -13,6 +14,11 @@ SLIPMAP_SETUP=cargo
 cd "$SLIPMAP_ROOT"
 export LC_ALL=C
 
+case ${1:-program} in
+program) of=(--features static-hdf5) parts=(uPlot) ;;
+module) of=(--package slipmap-python) parts=() ;;
+*) die "unknown argument $1: program or module" ;;
+esac
 texts=$(mktemp -d)
 trap 'rm -rf "$texts"' EXIT
 
@@ -37,7 +43,7 @@ licence_files() {
 }
 
 # NAME VERSION LICENCE of all that is linked but slipmap; macros that run in the compiler are not.
-linked=$(cargo tree --locked --features static-hdf5 --edges normal,no-proc-macro --prefix none --format '{p}|{l}' |
+linked=$(cargo tree --locked "${of[@]}" --edges normal,no-proc-macro --prefix none --format '{p}|{l}' |
     sed -n 's/ (\*)$//; s/^\([^ ]*\) v\([^ |]*\)|\(.*\)$/\1 \2 \3/p' | sort -u)
 manifests=$(cargo metadata --locked --format-version 1 --features static-hdf5 | grep -o '"manifest_path":"[^"]*"' | cut -d '"' -f 4)
 
@@ -53,7 +59,7 @@ while read -r name version licence; do
         [ -z "$file" ] || add "$name $version" "$folder/$file"
     done < <(licence_files "$folder")
 done <<<"$linked"
-printf 'uPlot: MIT\n'
+[ ${#parts[@]} = 0 ] || printf '%s: MIT\n' "${parts[@]}"
 
 for whose in "$texts"/*.whose; do
     printf '%s %s\n' "$(head -n 1 "$whose")" "${whose%.whose}"
@@ -63,5 +69,6 @@ done | sort | while read -r _ _ text; do
     printf '\n\n'
     cat "$text"
 done
+[ ${#parts[@]} != 0 ] || exit 0
 printf '\n%s\n\nuPlot:\n\n' ------------------------------------------------------------------------
 cat src/serve/page/uplot-license.txt

@@ -102,6 +102,34 @@ make_venv() {
     fi
 }
 
+# The first Python that is new enough and can make virtual environments.
+python_with_venv() {
+    local python
+    for python in python3 python3.13 python3.12 python3.11 /usr/bin/python3; do
+        if have "$python" &&
+            "$python" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            printf '%s\n' "$python"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# install_packages VENV REQUIREMENTS: the packages of a file in scripts, in an environment below target. The stamp says which
+# ones are there.
+install_packages() {
+    local venv=$SLIPMAP_ROOT/target/$1 requirements=scripts/$2
+    if cmp -s "$requirements" "$venv/$2" && "$venv/bin/python" -c '' 2>/dev/null; then
+        return
+    fi
+    say "installing the Python packages of $requirements into target/$1"
+    rm -rf "$venv"
+    mkdir -p target
+    "$(python_with_venv)" -m venv "$venv" || return 1
+    "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$requirements" >&2 || return 1
+    cp "$requirements" "$venv/$2"
+}
+
 need_cargo() {
     have cargo || PATH="$PATH:${CARGO_HOME:-$HOME/.cargo}/bin"
     have cargo || die "cargo is not here. Install Rust from https://rustup.rs and run this again."

@@ -4,7 +4,8 @@
 #   scripts/soak.sh [HOURS]
 #
 # The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/timed/faults.rs), every
-# loss of power (tests/files/crash.rs) and the memory of each command (tests/guards/memory.rs), then in turn, with new seeds,
+# loss of power (tests/files/crash.rs), the memory of each command (tests/guards/memory.rs) and of the Python module, and what
+# other programs of the kind take; then in turn, with new seeds,
 # until the time is over (1 hour by default): property tests of the model, kills of runs, damaged tiles and maps, flipped bits,
 # losses of power, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
@@ -34,6 +35,19 @@ say "every loss of power"
 SLIPMAP_FAULTS=all tests --test files crash::
 say "memory of every command"
 SLIPMAP_MEMORY=all tests --test guards memory:: -- --nocapture
+# scripts/test.sh has put the module there.
+if [ -x target/readers-venv/bin/pytest ]; then
+    say "memory of the Python module"
+    SLIPMAP_CALLS=100000 target/readers-venv/bin/pytest python/tests/test_memory.py
+    say "roots by the module and by other people's programs"
+    others=target/peers-venv
+    [ -x "$others/bin/python" ] || python3 -m venv "$others"
+    "$others/bin/pip" install --quiet --disable-pip-version-check numpy qpmr==0.1.0 tdcpy==0.0.1
+    "$others/bin/pip" install --quiet --disable-pip-version-check --no-deps --force-reinstall target/module-wheel/*.whl
+    "$others/bin/python" benches/peers/roots.py
+    say "motions by slipmap and by other people's programs"
+    benches/peers/run.sh 1
+fi
 round=0
 while [ $SECONDS -lt $until ]; do
     round=$((round + 1))

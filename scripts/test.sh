@@ -38,34 +38,6 @@ install_readers() {
         die "there is no Python 3.11 or newer with venv, and none can be installed; the tests read maps with it"
 }
 
-# The first Python that is new enough and can make virtual environments.
-python_with_venv() {
-    local python
-    for python in python3 python3.13 python3.12 python3.11 /usr/bin/python3; do
-        if have "$python" &&
-            "$python" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-            printf '%s\n' "$python"
-            return 0
-        fi
-    done
-    return 1
-}
-
-# install_packages VENV REQUIREMENTS: the packages of a file in scripts, in an environment below target. The stamp says which
-# ones are there.
-install_packages() {
-    local venv=$SLIPMAP_ROOT/target/$1 requirements=scripts/$2
-    if cmp -s "$requirements" "$venv/$2" && "$venv/bin/python" -c '' 2>/dev/null; then
-        return
-    fi
-    say "installing the Python packages of $requirements into target/$1"
-    rm -rf "$venv"
-    mkdir -p target
-    "$(python_with_venv)" -m venv "$venv" || return 1
-    "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$requirements" >&2 || return 1
-    cp "$requirements" "$venv/$2"
-}
-
 install_python_packages() {
     export SLIPMAP_PYTHON=$SLIPMAP_ROOT/target/readers-venv/bin/python
     install_packages readers-venv requirements-readers.txt ||
@@ -73,6 +45,28 @@ install_python_packages() {
     export SLIPMAP_CF_CHECKER=$SLIPMAP_ROOT/target/cf-venv/bin/compliance-checker
     install_packages cf-venv requirements-cf.txt || leave_out the_compliance_checker \
         "maps are not checked against the CF conventions: compliance-checker cannot be installed"
+}
+
+# The Python package as a wheel in the environment of the readers: its tests, its types, and the notebooks of the guide.
+install_module() {
+    local venv=$SLIPMAP_ROOT/target/readers-venv made=target/module-wheel
+    rm -rf "$made"
+    # With the profile of the tests, so that what it needs is built once.
+    PATH="$venv/bin:$PATH" step maturin build --manifest-path python/Cargo.toml --profile release --locked --compatibility linux --out "$made"
+    "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall "$made"/*.whl >&2
+}
+test_module() {
+    local venv=$SLIPMAP_ROOT/target/readers-venv
+    (
+        cd python
+        # Not `python -m`: that would find the sources here before the module that is installed.
+        step "$venv/bin/pytest"
+        step "$venv/bin/pytest" --pyargs --doctest-modules slipmap
+        step "$venv/bin/pytest" --doctest-glob="*.md" ../doc/guide/python.md
+        step "$venv/bin/mypy"
+        step "$venv/bin/stubtest" slipmap._core
+        step "$venv/bin/basedpyright" --pythonpath "$venv/bin/python"
+    )
 }
 
 octave_reads_netcdf() {
@@ -182,12 +176,13 @@ features=(--features external-readers)
 features+=($SLIPMAP_CARGO_FEATURES)
 
 if cargo fmt --version >/dev/null 2>&1; then
-    step cargo fmt --check
+    step cargo fmt --all --check
 else
     warnings+=("formatting is not checked, rustfmt is not installed (rustup component add rustfmt)")
 fi
 if cargo clippy --version >/dev/null 2>&1; then
     step cargo clippy --locked --all-targets "${features[@]}" -- -D warnings
+    step cargo clippy --locked --package slipmap-python -- -D warnings
 else
     warnings+=("lints are not checked, clippy is not installed (rustup component add clippy)")
 fi
@@ -195,7 +190,9 @@ step scripts/features.sh
 RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
 check_licences
 check_guide
+install_module
 step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
+test_module
 if [ -n "$browser" ]; then
     make_static_page
     step test_browser

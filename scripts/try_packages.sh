@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Tries the packages that scripts/release.sh left in target/release-files, each in a fresh Debian 12 with nothing added:
 #
-#   scripts/try_packages.sh [deb] [tarball]      both unless one is named
+#   scripts/try_packages.sh [deb] [tarball] [program-wheel] [module-wheel]      all unless some are named
 #
-# The .deb is installed by dpkg, the tarball unpacked. An ordinary user without a network then runs a shipped sweep, looks at
-# the map, draws it, verifies it and asks for a point. At last the .deb is removed, and nothing may be left of it.
+# The .deb is installed by dpkg, the tarball unpacked, the program's wheel installed by this machine's pip: there is no Python in
+# there. An ordinary user without a network then runs a shipped sweep, looks at the map, draws it, verifies it and asks for a
+# point. At last the .deb is removed, and nothing may be left of it. The module's wheel is tried with Debian's Python, which gets
+# it and what it needs from this machine's pip.
 # Needs root on Debian or Ubuntu, debootstrap (it is installed where it is missing), Debian's mirror, and some minutes.
 # scripts/test.sh does not run it.
 set -euo pipefail
@@ -15,11 +17,10 @@ SLIPMAP_SETUP=cargo
 cd "$SLIPMAP_ROOT"
 
 wanted=("$@")
-[ ${#wanted[@]} -gt 0 ] || wanted=(deb tarball)
+[ ${#wanted[@]} -gt 0 ] || wanted=(deb tarball program-wheel module-wheel)
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 files=target/release-files
 folder=$SLIPMAP_ROOT/target/try-packages
-fresh=$folder/bookworm.tar
 root=$folder/root
 
 [ "$(id -u)" = 0 ] || die "a root of its own needs root"
@@ -28,12 +29,14 @@ have debootstrap || { have apt-get && apt_install debootstrap; } || die "deboots
 mkdir -p "$folder"
 trap 'rm -rf "$root"' EXIT
 
-# What debootstrap made once is kept as an archive: each package gets a root that no other has touched.
+# fresh_root [PACKAGE]: with that package of Debian's. What debootstrap made once is kept as an archive: each package of ours gets
+# a root that no other has touched.
 fresh_root() {
+    local fresh=$folder/bookworm${1:+-$1}.tar
     rm -rf "$root"
     if [ ! -e "$fresh" ]; then
-        say "making a Debian 12"
-        debootstrap --variant=minbase bookworm "$root" >"$folder/debootstrap.log" || die "debootstrap failed: $folder/debootstrap.log"
+        say "making a Debian 12${1:+ with $1}"
+        debootstrap --variant=minbase ${1:+--include="$1"} bookworm "$root" >"$folder/debootstrap.log" || die "debootstrap failed: $folder/debootstrap.log"
         tar -C "$root" -cf "$fresh.part" .
         mv "$fresh.part" "$fresh"
         rm -rf "$root"
@@ -111,10 +114,54 @@ try_tarball() {
     use "/opt/$name/sweeps"
 }
 
+try_program_wheel() {
+    local venv=$folder/venv site
+    make_venv "$venv" || die "there is no Python with venv: the wheel is installed by pip"
+    fresh_root
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --no-index --find-links "$files" --ignore-installed \
+        --root "$root" --prefix /usr/local slipmap-program
+    site=/$(cd "$root" && echo usr/local/lib/python*/site-packages/slipmap_program-*.dist-info)
+    [ -z "$(find "$root/usr/local" -name '*.py' -o -name '*.so')" ] || die "there is more in the wheel than the program"
+    texts "$site"/licenses/{LICENSE-MIT,LICENSE-APACHE,LICENSES-OF-OTHERS}
+    grep -q 'The HDF Group' "$root$site/licenses/LICENSES-OF-OTHERS" || die "the licence of libhdf5 is missing"
+    cp -r sweeps "$root/opt/"
+    use /opt/sweeps
+}
+
+try_module_wheel() {
+    local venv=$folder/venv site=/usr/local/lib/python3.11/dist-packages
+    make_venv "$venv" || die "there is no Python with venv: the wheel is installed by pip"
+    fresh_root python3
+    # By its path: another package may have its name somewhere.
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: --python-version 3.11 --ignore-installed \
+        --target "$root$site" "$(echo "$files/slipmap-$version"-*.whl)[maps]"
+    texts "$site/slipmap-$version.dist-info"/licenses/{LICENSE-MIT,LICENSE-APACHE,LICENSES-OF-OTHERS}
+    cp -r sweeps "$root/opt/"
+    mkdir -m 777 "$root/tmp/user"
+    # shellcheck disable=SC2016 # for the shell within
+    inside 1000:1000 "module=$site/slipmap/_core.abi3.so
+"'cd /tmp/user
+if ldd $module | grep -Ev "linux-(vdso|gate)|ld-linux|lib(c|m|gcc_s|dl|pthread|rt)\.so"; then exit 1; fi
+python3 -c "
+import slipmap
+assert slipmap.n_unstable(mu_prime=-0.3, alpha_v=-0.33, tau=[1.0, 4.15]).tolist() == [2, 0]
+small = slipmap.run({\"axes\": {\"alpha_v\": [-0.33, 0.1], \"tau\": [1.0, 4.15]}, \"fixed\": {\"mu_prime\": -0.3}})
+small.to_netcdf(\"small.nc\", engine=\"h5netcdf\")
+print(slipmap.open_map(\"small.nc\"))
+tree = slipmap.run(\"/opt/sweeps/fig2a.toml\")
+tree.slipmap.plot().figure.savefig(\"fig2a.png\")
+print(slipmap.simulate(\"/opt/sweeps/fig3a.toml\").attrs[\"outcome\"])
+"
+[ "$(head -c 4 fig2a.png | tail -c 3)" = PNG ]
+ls -l'
+}
+
 for package in "${wanted[@]}"; do
     case $package in
     deb | tarball) "try_$package" ;;
-    *) die "unknown package $package: deb or tarball" ;;
+    program-wheel) try_program_wheel ;;
+    module-wheel) try_module_wheel ;;
+    *) die "unknown package $package: deb, tarball, program-wheel or module-wheel" ;;
     esac
     say "$package: good"
 done

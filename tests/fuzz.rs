@@ -79,6 +79,14 @@ fn kept_sweeps() {
         assert!(read.fixed.system().is_some());
         targets::ALL[0].1(sweep.as_bytes());
     }
+    for polynomials in [
+        "P = [1, 0.04, 1.2], Q = [-0.2]",
+        "B = [1, \"2*z\", \"1 + z\"], A = [0, \"-z\"]",
+        "P = [\"(z\", \"z)\"], Q = [[], nan, {}]",
+    ] {
+        let system = format!("{{ {polynomials}, parameters.z = 1 }}");
+        targets::ALL[0].1(format!("axes.tau = [0, 1]\nsystem = {system}\n").as_bytes());
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 # /// script
-# requires-python = ">=3.11"
-# dependencies = ["matplotlib>=3.8", "xarray>=2024.1", "netCDF4>=1.6.5", "scipy>=1.11"]
+# requires-python = ">=3.10"
+# dependencies = ["slipmap[maps]", "scipy>=1.11"]
 # ///
 """Reads a map of decay rates with xarray: a value, a condition on the status, a picture with the exact boundaries.
 
@@ -10,14 +10,11 @@
 
 import sys
 
-import matplotlib.pyplot as plt
-import numpy as np
-import xarray as xr
+import slipmap
 
 path, picture = sys.argv[1:]
-
-# Without mask_and_scale the status would become a floating-point number.
-cells = xr.open_dataset(path, mask_and_scale=False)
+tree = slipmap.open_map(path)
+cells = tree.dataset
 
 # By physical value: the nearest cell, and between cells.
 nearest = cells.sel(mu_prime=-0.3, alpha_n=-1.5, tau=0.8, method="nearest")
@@ -26,18 +23,8 @@ plane = cells.sel(mu_prime=-0.3, method="nearest")
 print("interpolated", float(plane.abscissa.interp(alpha_n=-1.5, tau=0.8)))
 
 # By status: only cells whose abscissa a second method has confirmed.
-flags = dict(zip(cells.status.flag_meanings.split(), cells.status.flag_masks))
-certified = (plane.status & flags["certified"]) != 0
+certified = tree.slipmap.flag("certified").sel(mu_prime=-0.3, method="nearest")
 print("certified", int(certified.sum()), "of", certified.size)
 
-plane.abscissa.where(certified).plot(x="alpha_n", y="tau", vmin=-1, vmax=1, cmap="BrBG_r", cbar_kwargs={"label": "abscissa"})
-plt.title(f"mu_prime = {float(plane.mu_prime)}")
-
-# The boundary of stability as exact curves, one after the other.
-curves = xr.open_dataset(path, group="boundaries", mask_and_scale=False)
-ends = np.cumsum(curves.vertex_count.values)[:-1]
-boundary = (curves.mu_prime == plane.mu_prime) & (curves.degree_of_stability == 0) & (curves.stable_side != 0)
-for alpha_n, tau, drawn in zip(np.split(curves.alpha_n.values, ends), np.split(curves.tau.values, ends), boundary):
-    if drawn:
-        plt.plot(alpha_n, tau, "k", linewidth=1)
-plt.savefig(picture, dpi=150)
+# A field with the boundary of stability as exact curves.
+tree.slipmap.plot("abscissa", mu_prime=-0.3).figure.savefig(picture, dpi=150)

@@ -56,13 +56,13 @@ impl Asked {
             Err(why) => Err(Failure::bad_input(format!("{flag}: {why}"))),
         }
     }
+}
 
-    /// What is stable or not, in words; `block` for the block.
-    pub(super) fn subject<'s>(&'s self, block: &'s str) -> &'s str {
-        match self.setting.system().map(|model| &*model.title) {
-            None => block,
-            Some("") => "the system",
-            Some(title) => title,
-        }
+/// What is stable or not, in words; `block` for the block.
+pub(super) fn subject<'s>(setting: &'s Setting, block: &'s str) -> &'s str {
+    match setting.system().map(|model| &*model.title) {
+        None => block,
+        Some("") => "the system",
+        Some(title) => title,
     }
 }

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::explore::basin::{BasinShare, Followed, no_law};
 use crate::report::numbers::{grouped, rounded, unit_behind};
@@ -130,7 +131,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             simulation,
             ..
         } = &question;
-        Followed::of(setting, simulation, basin, threads)
+        let never = Arc::default();
+        Followed::of(setting, simulation, basin, (threads, &never))
     });
     let followed = followed.map_err(|error| args.refused(&error))?;
     warn_beyond_curve(followed.beyond_curve(&question.setting, &question.units));

@@ -2,26 +2,24 @@
 
 use std::path::PathBuf;
 
-use crate::answers::best::{Ranges, best_settings, default_ranges};
-use crate::explore::point::Point;
-use crate::explore::stability::Wanted;
-use crate::explore::vc::CriticalVelocity;
+use crate::answers::best::{Ranges, default_ranges};
+use crate::explore::best::{Control, NotFound, Recommended, Searched};
+use crate::explore::best_answer::{BestAnswer, BestSetting, SystemBest};
+use crate::explore::robust::{MayBeOff, NotRobust, Spread};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::report::numbers::rounded;
 use crate::setting::amount::Amount;
 use crate::setting::point_file::PointOf;
 use crate::setting::quantity::Quantity;
-use crate::setting::search::Protocol;
-use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::system::SystemModel;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
-use crate::text::Shown;
 use crate::text::nearest::did_you_mean;
+use crate::text::{Shown, SpecError};
 
 use super::asked::Asked;
 use super::asks::AtAnyDelay;
-use super::best_answer::{Answer, BestAnswer, SystemBest};
 use super::best_text;
 use super::cell::alone;
 use super::failure::Failure;
@@ -30,8 +28,6 @@ use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
 use super::parameter_values::{amount_of, parse_amount};
 use super::parameters::ParameterArgs;
-use super::recommended::{Control, Recommended};
-use super::robust::Spread;
 use super::say::{self, ForPeople};
 use super::setting;
 use super::sweep_file::read_setting;
@@ -108,13 +104,24 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let default = default_ranges(&asked.setting, &searched)?;
     let ranges = args.ranges(&asked, &searched, &default)?;
     args.parameters.tell_static_friction("v_c depends on it");
-    let told = args.recommend(asked, searched, ranges)?;
-    let (setting, units) = (&told.asked.setting, &told.asked.units);
+    let named = asked.named;
+    let told = Recommended::of(
+        Searched {
+            setting: asked.setting,
+            units: asked.units,
+            of: searched,
+            ranges,
+            robust: args.robust,
+        },
+        &Stop::default(),
+    )?;
+    warn_of_few_errors(&told);
+    let (setting, units) = (&told.setting, &told.units);
     if let Some(found) = &told.vc {
         warn_beyond_curve(found.beyond_curve(setting, units));
     }
     if args.json {
-        json::print(&args.inputs(&told), &Answer::of(&told))?;
+        json::print(&args.inputs(named, &told), &BestSetting::of(&told))?;
     } else {
         let mut out = ForPeople::begin();
         let mut searched = vec![Parameter::Tau];
@@ -286,13 +293,18 @@ impl Args {
         })
     }
 
-    fn inputs(&self, told: &Recommended) -> Inputs {
+    fn inputs(&self, named: Option<(&'static str, String)>, told: &Recommended) -> Inputs {
         let Ranges { gain, tau } = told.ranges;
+        let asked = Asked {
+            setting: told.setting.clone(),
+            units: told.units.clone(),
+            named,
+        };
         let name = told.searched.name();
         let given = |of: &str| of != name && of != Parameter::Tau.name();
-        let inputs = told.asked.inputs(given);
+        let inputs = asked.inputs(given);
         let inputs = inputs.and("tau_from", tau.0).and("tau_to", tau.1);
-        match told.asked.named {
+        match asked.named {
             None => inputs
                 .and("control", self.control())
                 .and("alpha_from", gain.0)
@@ -304,51 +316,33 @@ impl Args {
                 .and("search_to", gain.1),
         }
     }
+}
 
-    fn recommend(
-        &self,
-        asked: Asked,
-        searched: Quantity,
-        ranges: Ranges,
-    ) -> Result<Recommended, Failure> {
-        let (setting, stop) = (&asked.setting, Stop::default());
-        let gain = self.control().searched();
-        let (found, robust, may_be_off) = match self.robust {
-            None => (
-                best_settings(setting, &searched, &ranges, &stop)?,
-                None,
-                None,
-            ),
-            Some(spread) => spread.settings(setting, gain, &ranges, &stop)?,
-        };
-        let (value, tau) = match &robust {
-            Some(of) => (of.robust.gain, of.robust.tau),
-            None => (found.overall.gain, found.overall.tau),
-        };
-        let mut best = setting.clone();
-        best.vary(&searched, value);
-        best.set(Parameter::Tau, tau);
-        let moves = best.law().is_some() && best.check_of_letter(NOT_IN_MOTIONS, "").is_ok();
-        let vc = moves.then(|| CriticalVelocity::of(&best, Protocol::Follow, &stop));
-        let vc = vc.transpose()?;
-        // The margins of the block need one root; of a system all are told.
-        let wanted = Wanted {
-            roots: if asked.named.is_some() { 4 } else { 1 },
-            line: None,
-        };
-        Ok(Recommended {
-            point: Point::at(&best, wanted, &stop)?,
-            asked: Asked {
-                setting: best,
-                ..asked
-            },
-            searched,
-            ranges,
-            may_be_off,
-            found,
-            robust,
-            vc,
-        })
+/// A setting that stands fewer standard errors of a fit than this is warned of.
+const FEW_ERRORS: f64 = 2.0;
+
+fn warn_of_few_errors(told: &Recommended) {
+    if let (Some(MayBeOff::Errors(errors, _)), Some(_)) = (told.may_be_off, &told.robust)
+        && errors < FEW_ERRORS
+    {
+        say::remark(format_args!(
+            "warning: no setting stands more than {} standard errors of the fit: measure more \
+             points near v0, or try the other --control",
+            rounded(errors, 2)
+        ));
+    }
+}
+
+impl From<NotFound> for Failure {
+    fn from(why: NotFound) -> Self {
+        match why {
+            NotFound::NoAnswer(why) => why.into(),
+            NotFound::Robust(why @ NotRobust::TooWide(..)) => {
+                let SpecError { message, help, .. } = why.told();
+                Self::failed_with_help(message, help.unwrap_or_default())
+            }
+            NotFound::Robust(why) => Self::of_input(why.told()),
+        }
     }
 }
 

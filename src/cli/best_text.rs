@@ -3,17 +3,17 @@
 use std::io::Write;
 
 use crate::answers::robust_to_fit::MOST_ERRORS;
+use crate::explore::best::{Control, Recommended};
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
+use crate::explore::robust::MayBeOff;
 use crate::linear::best::Optimum;
 use crate::report::numbers::{counted, rounded, unit_behind};
 use crate::setting::{Field, Parameter};
 use crate::text::finite;
 
-use super::asked::Asked;
+use super::asked::subject;
 use super::margins::of_what_is_given;
 use super::output::tell_dimensionless;
-use super::recommended::{Control, Recommended};
-use super::robust::MayBeOff;
 use super::{margins, vc};
 
 /// A number with as many digits as a person can use.
@@ -50,32 +50,27 @@ fn yes_or_no(certified: bool) -> &'static str {
     if certified { "yes" } else { "no" }
 }
 
-impl Recommended {
-    /// The unit of what is searched, behind a number; a system's own parameter is told without.
-    fn unit_of_searched(&self) -> String {
-        let known = self.searched.known();
-        known.map_or_else(String::new, |p| {
-            unit_behind(&self.asked.units.of_parameter(p))
-        })
-    }
+/// The unit of what is searched, behind a number; a system's own parameter is told without.
+fn unit_of_searched(told: &Recommended) -> String {
+    let known = told.searched.known();
+    known.map_or_else(String::new, |p| unit_behind(&told.units.of_parameter(p)))
 }
 
 /// Prints what was found for people.
 pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
     let Recommended {
-        asked,
+        units,
         searched,
         found,
         ranges,
         ..
     } = told;
-    let units = &asked.units;
     if let Some(may_be_off) = told.may_be_off {
         print_robust(out, may_be_off, told)?;
     }
     let best = &found.overall;
     let time = unit_behind(&units.time());
-    let subject = asked.subject("sliding");
+    let subject = subject(&told.setting, "sliding");
     if let Some(relaxation) = best.relaxation_time().map(short) {
         let relaxes = "relaxes fastest, with the relaxation time";
         writeln!(out, "{subject} {relaxes} {relaxation}{time}, at")?;
@@ -87,7 +82,7 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
         writeln!(out, "{has}{}", nothing_decays(!found.regions.is_empty()))?;
     }
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let gain = told.unit_of_searched();
+    let gain = unit_of_searched(told);
     row(searched.name(), short(best.gain) + &gain)?;
     row("tau", short(best.tau) + &time)?;
     let unit = |field: Field| unit_behind(&field.unit(units));
@@ -125,7 +120,7 @@ fn print_block(
     told: &Recommended,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let units = &told.asked.units;
+    let units = &told.units;
     let with = |parameter: Parameter, value: f64| {
         format!(
             "{}{}",
@@ -179,7 +174,7 @@ fn print_robust(
             "no setting found in the ranges stays stable when {off}"
         );
     };
-    let units = &told.asked.units;
+    let units = &told.units;
     let (rate, time) = (unit_behind(&units.rate()), unit_behind(&units.time()));
     let within = |worst: f64, abscissa: f64| {
         if worst.is_infinite() {
@@ -197,7 +192,7 @@ fn print_robust(
     let found = &of.robust;
     row(
         told.searched.name(),
-        short(found.gain) + &told.unit_of_searched(),
+        short(found.gain) + &unit_of_searched(told),
     )?;
     row("tau", short(found.tau) + &time)?;
     let abscissa = match found.abscissa.is_finite() {
@@ -210,8 +205,8 @@ fn print_robust(
         within(found.worst_abscissa, found.abscissa),
     )?;
     let certified = match found.certified {
-        true if told.asked.setting.law().is_some() => {
-            format!("yes, proved{}", of_what_is_given(&told.asked.setting))
+        true if told.setting.law().is_some() => {
+            format!("yes, proved{}", of_what_is_given(&told.setting))
         }
         certified => yes_or_no(certified).to_owned(),
     };
@@ -258,7 +253,7 @@ fn print_recommended(
         "best"
     };
     writeln!(out, "at the {which} setting")?;
-    let Asked { setting, units, .. } = &told.asked;
+    let Recommended { setting, units, .. } = told;
     let violations = margins::violations(&point.stability);
     margins::print(out, &point.margins, violations, setting, units)?;
     match &told.vc {
@@ -270,7 +265,7 @@ fn print_recommended(
 /// One line for each stable region, with its best setting; nothing without regions. The columns
 /// have units where there are any.
 fn print_regions(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
-    let (units, found) = (&told.asked.units, &told.found);
+    let (units, found) = (&told.units, &told.found);
     let optima = found.regions.iter().map(|region| &region.best);
     let mut optima = optima.peekable();
     if optima.peek().is_none() {

@@ -6,12 +6,12 @@
 //! - `axis_facts`: the facts of an axis, for a sweep and for a map
 //! - `basin`: `slipmap basin`: its starts and its output
 //! - `best`: `slipmap best`
-//! - `best_answer`: the output of `slipmap best` with `--json`
 //! - `best_text`: the output of `slipmap best` for people
 //! - `case_facts`: the facts of a case, before it is simulated and from its trace
 //! - `cell`: a cell of a map instead of flags or a case file
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
+//! - `control`: controls by name
 //! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
@@ -41,10 +41,8 @@
 //! - `point_args`: the arguments for a point of sliding
 //! - `point_text`: the output of `slipmap point` for people
 //! - `read_map`: `slipmap read-map`
-//! - `recommended`: the setting that `slipmap best` recommends
 //! - `reference`: `slipmap reference`
 //! - `reproduce`: `slipmap reproduce`: the files that it may write, and its output
-//! - `robust`: what a robust setting is to stand, `--robust`, and the search for it
 //! - `run`: `slipmap run`
 //! - `say`: messages to the user
 //! - `schema`: `slipmap schema`
@@ -69,12 +67,12 @@ mod asks;
 mod axis_facts;
 mod basin;
 mod best;
-mod best_answer;
 mod best_text;
 mod case_facts;
 mod cell;
 mod colours;
 mod completions;
+mod control;
 mod excerpt;
 mod export;
 mod failure;
@@ -104,10 +102,8 @@ mod point;
 mod point_args;
 mod point_text;
 mod read_map;
-mod recommended;
 mod reference;
 mod reproduce;
-mod robust;
 mod run;
 mod say;
 mod schema;

@@ -3,17 +3,14 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use crate::model::stop::Stop;
 use crate::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
 use crate::setting::axis::Axis;
 use crate::store::tiles::RecordEncoder;
-use crate::sweep::cells::best_planes::{best_of_plane, best_plane};
-use crate::sweep::cells::boundaries::{plane, trace_plane};
 use crate::sweep::described::schema::STATUS;
-use crate::sweep::engine::{Computed, Encode, Worker};
-use crate::sweep::plan::pieces::spread;
+use crate::sweep::engine::{Computed, Encode};
+use crate::sweep::estimate::Costs;
 use crate::sweep::{Memory, Piece, Plan};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -26,11 +23,6 @@ use super::plan_case;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::say::Rows;
 use super::sweep_file::{Described, read_sweep_or_case};
-
-/// A sample ends after this time once it has enough pieces, and after the longest time in any case.
-const SAMPLE: Duration = Duration::from_millis(500);
-const ENOUGH: usize = 12;
-const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
 /// Measured bytes of a map besides its numbers: of the file, of each dataset of cells or axis, of
 /// each chunk in an index, and of the group of curves.
@@ -80,7 +72,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     warn_beyond_curve(plan.spec.curve_remark());
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    let facts = Facts::of(&plan, threads)?;
+    let facts = Facts::of(&plan, threads);
     match args.json {
         true => {
             let inputs = Inputs::default().and("sweep", &args.sweep);
@@ -131,8 +123,11 @@ struct Facts {
 }
 
 impl Facts {
-    fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
-        let costs = Costs::of(plan)?;
+    fn of(plan: &Plan, threads: usize) -> Self {
+        let mut encoder = RecordEncoder::default();
+        let stored =
+            |piece: Piece, computed: Computed<'_>| encoder.encode(piece, computed).payload.len();
+        let costs = Costs::of(plan, stored, &Stop::default());
         let axis = |axis: &Axis| AxisFacts::of(&axis.parameter, &axis.values);
         let name = |axis: &Axis| axis.parameter.name().to_owned();
         let unit = |axis: &Axis| {
@@ -142,7 +137,7 @@ impl Facts {
         let (total, spread) = costs.seconds();
         let seconds = [(total - spread).max(0.0), total, total + spread];
         let fields = plan.spec.fields.iter().map(|field| field.name());
-        Ok(Self {
+        Self {
             kind: "sweep",
             axes: plan.spec.axes.iter().map(axis).collect(),
             units: plan.spec.axes.iter().map(unit).collect(),
@@ -159,12 +154,12 @@ impl Facts {
             no_boundaries: plan.no_boundaries().map(|why| why.to_string()),
             best_planes: plan.best_plane().map(|_| plan.best_planes()),
             bytes: plan.cells() * plan.bytes_per_cell(),
-            bytes_on_disk: costs.bytes_on_disk(plan),
+            bytes_on_disk: bytes_on_disk(&costs, plan),
             memory: Memory::of(plan).on(threads),
             threads,
             seconds: seconds.map(|seconds| seconds / threads as f64),
             tiles_timed: costs.tiles.values.len(),
-        })
+        }
     }
 
     fn tell(&self) -> Result<(), Failure> {
@@ -210,125 +205,14 @@ impl Facts {
     }
 }
 
-/// Measured values of some pieces of one kind, and the number of all pieces of that kind.
-struct Sample {
-    values: Vec<f64>,
-    of: usize,
-}
-
-impl Sample {
-    /// Measures pieces spread over all `of` pieces.
-    fn take(
-        of: usize,
-        mut measured: impl FnMut(usize) -> Result<f64, Failure>,
-    ) -> Result<Self, Failure> {
-        let start = Instant::now();
-        let mut values = Vec::new();
-        while values.len() < of {
-            let elapsed = start.elapsed();
-            if elapsed > LONGEST_SAMPLE || (elapsed > SAMPLE && values.len() >= ENOUGH) {
-                break;
-            }
-            let number = (spread(values.len() as u64) * of as f64) as usize;
-            values.push(measured(number)?);
-        }
-        Ok(Self { values, of })
-    }
-
-    fn mean(&self) -> f64 {
-        self.values.iter().sum::<f64>() / self.values.len().max(1) as f64
-    }
-
-    fn total(&self) -> f64 {
-        self.mean() * self.of as f64
-    }
-
-    /// Twice the standard error of the total. For a single piece, its value stands for the
-    /// deviation.
-    fn spread(&self) -> f64 {
-        let (n, mean) = (self.values.len() as f64, self.mean());
-        if self.values.len() == self.of {
-            return 0.0;
-        }
-        let squares: f64 = self.values.iter().map(|v| (v - mean).powi(2)).sum();
-        let variance = if n > 1.0 {
-            squares / (n - 1.0)
-        } else {
-            mean * mean
-        };
-        2.0 * self.of as f64 * (variance / n.max(1.0)).sqrt()
-    }
-}
-
-/// The cost of pieces on one thread: seconds and bytes.
-struct Costs {
-    tiles: Sample,
-    curves: Sample,
-    best: Sample,
-    bytes: Sample,
-    bytes_of_curves: Sample,
-}
-
-impl Costs {
-    fn of(plan: &Plan) -> Result<Self, Failure> {
-        let (mut worker, stop) = (Worker::new(plan), Stop::default());
-        let mut encoder = RecordEncoder::default();
-        let (mut stored, mut of_curves) = (Vec::new(), Vec::new());
-        let tiles = Sample::take(plan.tiles.len(), |number| {
-            let start = Instant::now();
-            worker.compute(&plan.tiles.tile(number), &stop);
-            let piece = Piece::Tile(number as u64);
-            let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
-            stored.push(record.payload.len() as f64);
-            Ok(start.elapsed().as_secs_f64())
-        })?;
-        let curves = Sample::take(plan.boundary_planes() as usize, |number| {
-            let start = Instant::now();
-            let traced = trace_plane(plan, &plane(plan, number as u64), &stop);
-            let taken = start.elapsed().as_secs_f64();
-            let piece = Piece::Curves(number as u64);
-            let record = encoder.encode(piece, Computed::Curves(&traced));
-            of_curves.push(record.payload.len() as f64);
-            Ok(taken)
-        })?;
-        let best = Sample::take(plan.best_planes() as usize, |number| {
-            let start = Instant::now();
-            std::hint::black_box(best_of_plane(plan, &best_plane(plan, number as u64), &stop));
-            Ok(start.elapsed().as_secs_f64())
-        })?;
-        let bytes = Sample {
-            values: stored,
-            of: plan.tiles.len(),
-        };
-        let bytes_of_curves = Sample {
-            values: of_curves,
-            of: plan.boundary_planes() as usize,
-        };
-        Ok(Self {
-            tiles,
-            curves,
-            best,
-            bytes,
-            bytes_of_curves,
-        })
-    }
-
-    /// Approximate bytes of the map: its cells, its curves, and their description.
-    fn bytes_on_disk(&self, plan: &Plan) -> u64 {
-        let datasets = (plan.spec.fields.len() + plan.spec.axes.len() + 1) as f64;
-        let chunks = plan.tiles.len() as f64 * (plan.spec.fields.len() + 1) as f64;
-        let described = WITHOUT_CELLS + datasets * OF_A_DATASET + chunks * OF_A_CHUNK;
-        let curves = match plan.boundary_planes() {
-            0 => 0.0,
-            _ => WITHOUT_CURVES + self.bytes_of_curves.total(),
-        };
-        (described + curves + self.bytes.total()) as u64
-    }
-
-    /// Seconds of all pieces on one thread, with the error of this estimate.
-    fn seconds(&self) -> (f64, f64) {
-        let all = [&self.tiles, &self.curves, &self.best];
-        let squares: f64 = all.iter().map(|s| s.spread().powi(2)).sum();
-        (all.iter().map(|s| s.total()).sum(), squares.sqrt())
-    }
+/// Approximate bytes of the map: its cells, its curves, and their description.
+fn bytes_on_disk(of: &Costs, plan: &Plan) -> u64 {
+    let datasets = (plan.spec.fields.len() + plan.spec.axes.len() + 1) as f64;
+    let chunks = plan.tiles.len() as f64 * (plan.spec.fields.len() + 1) as f64;
+    let described = WITHOUT_CELLS + datasets * OF_A_DATASET + chunks * OF_A_CHUNK;
+    let curves = match plan.boundary_planes() {
+        0 => 0.0,
+        _ => WITHOUT_CURVES + of.bytes_of_curves.total(),
+    };
+    (described + curves + of.bytes.total()) as u64
 }

@@ -11,7 +11,7 @@ use crate::setting::{Field, Parameter, Setting};
 use crate::sweep::relaxation_time;
 use crate::text::{Shown, finite};
 
-use super::asked::Asked;
+use super::asked::{Asked, subject};
 use super::margins::of_fit;
 use super::output::tell_dimensionless;
 
@@ -80,7 +80,7 @@ fn verdict(stability: &Stability) -> &'static str {
 /// Prints a point for people.
 pub(super) fn print(out: &mut impl Write, point: &Point, asked: &Asked) -> std::io::Result<()> {
     let (units, stability) = (&asked.units, point.stability());
-    let subject = asked.subject("continuous sliding");
+    let subject = subject(&asked.setting, "continuous sliding");
     writeln!(out, "{subject} is {}", verdict(stability))?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     match point {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::answers::Trace;
 use crate::answers::trace::TraceError;
 use crate::explore::motion::{Followed, MotionSummary};
+use crate::model::stop::Stop;
 use crate::report::numbers::{grouped, unit_behind};
 use crate::report::picture::{self, PictureOptions};
 use crate::report::table::write_samples;
@@ -151,7 +152,9 @@ fn simulate_to_text(
 
 impl Args {
     fn follow(&self, spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
-        let followed = signals.or_end("there is no trace", || Followed::whole(spec));
+        let followed = signals.or_end("there is no trace", || {
+            Followed::whole(spec, &Stop::default())
+        });
         let followed = followed.map_err(|error| match error {
             TraceError::TooLong(_) => {
                 let from = match &self.case {

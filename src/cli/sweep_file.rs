@@ -3,12 +3,10 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use encoding_rs::{Encoding, WINDOWS_1252};
-
 use crate::model::Table;
 use crate::report::numbers::bytes;
 use crate::setting::case_file::{TextKind, is_case_file};
-use crate::setting::measured::{CurveOptions, Measured};
+use crate::setting::measured::{CurveOptions, Measured, decoded};
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::system::SystemModel;
 use crate::setting::table_file::{Inlined, Named, NotInlined};
@@ -212,21 +210,6 @@ fn as_text(
 /// A text that is UTF-8.
 fn utf_8(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".into())
-}
-
-/// A text of columns as spreadsheets save it: UTF-8, UTF-16 with a byte order mark, else
-/// Windows-1252.
-fn decoded(bytes: Vec<u8>) -> Result<String, String> {
-    let text = match Encoding::for_bom(&bytes) {
-        Some((encoding, _)) => encoding.decode(&bytes).0.into_owned(),
-        None => String::from_utf8(bytes)
-            .unwrap_or_else(|error| WINDOWS_1252.decode(error.as_bytes()).0.into_owned()),
-    };
-    let no_text = |c: char| c.is_control() && !c.is_whitespace();
-    match text.contains(no_text) {
-        true => Err("it is not text: save the columns as CSV".into()),
-        false => Ok(text),
-    }
 }
 
 /// Reads standard input, up to one byte more than a file may have.

@@ -1,6 +1,8 @@
 //! The share of starts from which control ends in sliding, at a point of parameter space.
 
 use std::convert::Infallible;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
@@ -30,16 +32,16 @@ pub struct Followed {
 
 impl Followed {
     /// Follows the starts of a setting on `threads` threads. The result does not depend on their
-    /// number.
+    /// number. `stop` is checked between starts.
     ///
     /// # Errors
-    /// When the setting has no friction law, a value is out of range, the delay is too long, or the
-    /// threads cannot be started.
+    /// When the setting has no friction law, a value is out of range, the delay is too long, the
+    /// threads cannot be started, or it is stopped.
     pub fn of(
         setting: &Setting,
         simulation: &Simulation,
         basin: &Basin,
-        threads: usize,
+        (threads, stop): (usize, &Arc<AtomicBool>),
     ) -> Result<Self, RunError<Infallible>> {
         let asked = BasinProblem::of(setting, simulation, basin)?.ok_or_else(no_law)?;
         let begin = || (asked.follower(), None);
@@ -47,8 +49,15 @@ impl Followed {
         let unit = asked.velocity_unit();
         let followed = each(places, threads, begin, |(follower, motion), place| {
             let mut speeds = Speeds::default();
-            (follower.follow(place, motion, &mut speeds), speeds)
+            let outcome = match stop.load(Ordering::Relaxed) {
+                true => Outcome::Undecided,
+                false => follower.follow(place, motion, &mut speeds),
+            };
+            (outcome, speeds)
         })?;
+        if stop.load(Ordering::Relaxed) {
+            return Err(RunError::Interrupted);
+        }
         let speeds = followed.iter().map(|(_, speeds)| speeds.times(unit));
         Ok(Self {
             basin: *basin,
@@ -60,7 +69,7 @@ impl Followed {
 
     /// A remark on motions that went beyond the points of the measured friction law of `setting`.
     #[must_use]
-    pub(crate) fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
+    pub fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
         setting.motion_beyond_curve(self.speeds, units)
     }
 

@@ -10,6 +10,8 @@
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
+//! - [`best`]: the settings of fastest decay, with all about the recommended one; [`robust`]: what
+//!   it is to stand; [`best_answer`]: the same as plain data
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`known`]: all parameters, friction laws and fields
@@ -25,6 +27,8 @@
 pub mod along_delay;
 pub mod answer;
 pub mod basin;
+pub mod best;
+pub mod best_answer;
 pub mod chart;
 pub mod chart_bytes;
 pub mod encoded;
@@ -36,6 +40,7 @@ pub mod motion;
 pub mod motion_bytes;
 pub mod point;
 pub mod problem;
+pub mod robust;
 pub mod stability;
 pub mod stable_line;
 pub mod vc;

@@ -72,13 +72,14 @@ impl Followed {
         })
     }
 
-    /// Follows a case to the end of its trace, whatever that takes.
+    /// Follows a case to the end of its trace, whatever that takes; `stop` is checked at every
+    /// step.
     ///
     /// # Errors
     /// As [`Trace::of`].
-    pub fn whole(case: &CaseSpec) -> Result<Self, TraceError> {
+    pub fn whole(case: &CaseSpec, stop: &Stop) -> Result<Self, TraceError> {
         let most = Most::Refused(MOST_SAMPLES);
-        let (trace, speeds) = Trace::with_speeds(case, most, &Stop::default())?;
+        let (trace, speeds) = Trace::with_speeds(case, most, stop)?;
         Ok(Self {
             spec: case.clone(),
             trace,

@@ -87,7 +87,7 @@ impl CriticalVelocity {
     /// A remark on a critical velocity of `setting`, or the bounds of one that is not decided, or a
     /// velocity of lift-off, beyond the points of its measured friction law.
     #[must_use]
-    pub(crate) fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
+    pub fn beyond_curve(&self, setting: &Setting, units: &Units) -> Option<String> {
         let (of, found) = match self.decided {
             true if self.vc.is_finite() => ("v_c", vec![self.vc]),
             true => ("v_liftoff", vec![self.v_liftoff]),

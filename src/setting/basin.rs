@@ -32,7 +32,7 @@ pub enum Over {
 
 impl Over {
     /// All.
-    pub(crate) const ALL: [Self; 2] = [Self::State, Self::Phase];
+    pub const ALL: [Self; 2] = [Self::State, Self::Phase];
 
     /// The name in flags, sweep files and maps.
     #[must_use]
@@ -114,7 +114,7 @@ impl Basin {
     ///
     /// # Errors
     /// Says which numbers are allowed.
-    pub(crate) fn check_starts(starts: u64) -> Result<u32, String> {
+    pub fn check_starts(starts: u64) -> Result<u32, String> {
         let range = u64::from(FEWEST_STARTS)..=u64::from(MOST_STARTS);
         match starts.is_power_of_two() && range.contains(&starts) {
             true => Ok(starts as u32),
@@ -149,7 +149,7 @@ impl Basin {
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub(crate) fn velocities(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
+    pub fn velocities(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
         let fastest = || {
             let oscillator = setting.oscillator()?;
             let released = stuck(setting)? / oscillator.time_unit();
@@ -164,7 +164,7 @@ impl Basin {
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
-    pub(crate) fn elongations(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
+    pub fn elongations(&self, setting: &Setting) -> Result<[f64; 2], ModelError> {
         let sticking = || stuck(setting).map(|limit| [-limit, limit]);
         self.a0.map_or_else(sticking, Ok)
     }

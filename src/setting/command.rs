@@ -10,15 +10,17 @@ use crate::critical::switch_on::Phase;
 
 /// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters. Default values
 /// are left out, and numbers have the fewest digits from which they are read unchanged. None for a
-/// table, whose points are in a file.
+/// table and for a fitted law, which are in a file.
 #[must_use]
-pub(crate) fn command_line(
+pub fn command_line(
     command: &str,
     setting: &Setting,
     wanted: impl Fn(Parameter) -> bool,
 ) -> Option<String> {
     let law = match setting.law() {
         None => String::new(),
+        // The errors of a fit are in a file, as points are.
+        Some(_) if setting.fit_errors().is_some() => return None,
         Some(LawKind::Table(_)) => return None,
         Some(law) => format!(" --friction={}", law.name()),
     };
@@ -42,7 +44,7 @@ pub(crate) fn command_line(
 
 /// `slipmap vc` for a setting; its v0 and its start are ignored.
 #[must_use]
-pub(crate) fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
+pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     let command = match protocol {
         Protocol::Follow => "vc".to_owned(),
         Protocol::SwitchOn(Phase::Worst(_)) => "vc --protocol=switch-on --phase=worst".to_owned(),
@@ -57,7 +59,7 @@ pub(crate) fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String
 /// `slipmap point` for a setting. None for a table and for a system that is no part of the program,
 /// whose files are not known.
 #[must_use]
-pub(crate) fn point_command(setting: &Setting) -> Option<String> {
+pub fn point_command(setting: &Setting) -> Option<String> {
     let Some(model) = setting.system() else {
         return command_line("point", setting, |parameter| of_point(setting, parameter));
     };

@@ -25,7 +25,7 @@ impl Setting {
     /// A remark on a v0 beyond the points of a measured friction law, or at which its slope is not
     /// sure.
     #[must_use]
-    pub(crate) fn curve_remark(&self, units: &Units) -> Option<String> {
+    pub fn curve_remark(&self, units: &Units) -> Option<String> {
         self.remark_at(&[self.get(Parameter::V0)], units)
     }
 
@@ -68,7 +68,7 @@ impl SweepSpec {
     /// A remark on values of v0, fixed or of an axis, beyond the points of a measured friction law,
     /// or at which its slope is not sure.
     #[must_use]
-    pub(crate) fn curve_remark(&self) -> Option<String> {
+    pub fn curve_remark(&self) -> Option<String> {
         let axis = self.axes.iter().find(|a| a.parameter == Parameter::V0);
         let fixed = [self.fixed.get(Parameter::V0)];
         let speeds = axis.map_or(&fixed[..], |axis| &axis.values);

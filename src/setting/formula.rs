@@ -95,7 +95,7 @@ impl FormulaModel {
             meanings.push(meaning);
         }
         let names: Vec<&str> = [SPEED].into_iter().chain(words).collect();
-        let tape = read_number(text, &names)?;
+        let tape = read_number(text, &names, false)?;
         let known = meanings.iter().filter_map(|name| match name {
             Name::Known(parameter) => Some(*parameter),
             Name::Own(_) => None,

@@ -204,7 +204,7 @@ fn read_formula(
     let is_formula = |law: &&Entry| law.string().is_ok_and(|name| name == LawKind::FORMULA);
     of("law").filter(is_formula)?;
     let key = TableColumn::MuK.name();
-    let written = Written::of(key, of(key)?, text);
+    let written = Written::of(key.to_owned(), of(key)?, text);
     Some(written.and_then(|written| {
         let mut formula = GivenFormula::written(&written)?;
         for entry in friction.iter().chain(axes) {

@@ -1,8 +1,9 @@
-//! The system of a sweep: its parameters, and the keys that it cannot have.
+//! The system of a sweep or a point: its parameters, and the keys that it cannot have.
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::system::{SystemModel, shipped};
 use super::units::Units;
@@ -64,6 +65,19 @@ impl GivenSystem {
             setting: Setting::of_system(Arc::clone(&model)),
             model,
             given: Vec::new(),
+        })
+    }
+
+    /// Checks that the delay is given; where it is not, that is told at `place`.
+    pub(super) fn check_delay(&self, place: Option<&Range<usize>>) -> Result<(), SpecError> {
+        let tau = Parameter::Tau;
+        if self.given.iter().any(|(of, _)| *of == tau) {
+            return Ok(());
+        }
+        let help = format!("tau: {}, {}", tau.long_name(), tau.allowed());
+        Err(SpecError {
+            span: place.cloned(),
+            ..SpecError::whole("tau is not given").help(help)
         })
     }
 

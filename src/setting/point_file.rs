@@ -14,10 +14,15 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 //!
+//! In the place of `[friction]`, a point of sliding may have a `system`, as in sweep files;
+//! `[fixed]` then has its parameters.
+//!
 //! For the critical velocity there may also be `protocol`, `phase` and, in `[start]`,
 //! `switch_on_phase`, as in sweep files.
 
+use super::amount::units_of;
 use super::given::GivenParameters;
+use super::given_system::GivenSystem;
 use super::parameter::{Group, Parameter};
 use super::search::Protocol;
 use super::units::Units;
@@ -39,6 +44,8 @@ pub enum PointOf {
     CriticalVelocityOfSetting,
     /// Its friction law alone.
     Law,
+    /// Its friction law or its system, of which parameters may be missing: they vary.
+    Subject,
 }
 
 impl PointOf {
@@ -46,7 +53,7 @@ impl PointOf {
     const fn takes(self, parameter: Parameter) -> bool {
         match (self, parameter.group()) {
             (_, Group::Limit | Group::Start) => false,
-            (Self::Sliding | Self::SlidingAtAnyDelay, _) => true,
+            (Self::Sliding | Self::SlidingAtAnyDelay | Self::Subject, _) => true,
             (Self::CriticalVelocity, Group::Pull) => false,
             (_, group) => !matches!(group, Group::Sliding),
         }
@@ -75,10 +82,16 @@ impl PointSpec {
             PointOf::CriticalVelocity => {
                 &["protocol", "phase", "fixed", "friction", "start", "units"]
             }
-            _ => &["fixed", "friction", "units"],
+            PointOf::CriticalVelocityOfSetting | PointOf::Law => &["fixed", "friction", "units"],
+            PointOf::Sliding | PointOf::SlidingAtAnyDelay | PointOf::Subject => {
+                &["system", "fixed", "friction", "units"]
+            }
         };
         let entries = entries(parsed.get_ref(), "");
         let mut document = Document::of(entries, keys.iter().copied());
+        if let Some(system) = GivenSystem::of(&mut document, text)? {
+            return Self::of_system(document, system, of);
+        }
         let given = GivenParameters::of(&mut document, text, |p| of.takes(p));
         let search = VcKeys::of(&mut document, &Protocol::NAMES);
         document.finish()?;
@@ -93,6 +106,13 @@ impl PointSpec {
             PointOf::Law => {
                 given.check(&[Parameter::V0, Parameter::Tau], None)?;
             }
+            PointOf::Subject => {
+                return Ok(Self {
+                    setting,
+                    units: given.units().clone(),
+                    protocol,
+                });
+            }
         }
         // Without v0, only the law itself can be checked.
         let law = setting.friction_law();
@@ -101,6 +121,27 @@ impl PointSpec {
             protocol: protocol.at(&setting),
             setting,
             units: given.units().clone(),
+        })
+    }
+}
+
+impl PointSpec {
+    /// Reads a point of a system.
+    fn of_system(
+        mut document: Document,
+        mut system: GivenSystem,
+        of: PointOf,
+    ) -> Result<Self, SpecError> {
+        let units = units_of(&mut document);
+        document.each(&["fixed"], |table| system.read_fixed(table, &units));
+        document.finish()?;
+        if of == PointOf::Sliding {
+            system.check_delay(None)?;
+        }
+        Ok(Self {
+            setting: system.setting,
+            units,
+            protocol: Protocol::Follow,
         })
     }
 }

@@ -32,18 +32,24 @@ pub(crate) fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) ->
 
 /// Whether a point of this setting has the parameter.
 #[must_use]
-pub(crate) fn of_point(setting: &Setting, parameter: Parameter) -> bool {
+pub fn of_point(setting: &Setting, parameter: Parameter) -> bool {
     !parameter.of_start() && setting.uses(parameter)
 }
 
 /// The tables of a setting, with its `wanted` parameters but without its start.
 #[must_use]
-pub(crate) fn setting_text(
+pub fn setting_text(
     setting: &Setting,
     units: &Units,
     wanted: impl Fn(Parameter) -> bool,
 ) -> String {
     let wanted = |parameter| wanted(parameter) && of_point(setting, parameter);
+    if let Some(system) = setting.system() {
+        let named = format!("system = {}\n", system.to_inline_table());
+        let own = setting.own().filter(|(_, value)| !value.is_nan());
+        let own = own.map(|(own, value)| format!("{} = {}\n", own.name, number(value)));
+        return named + &table("fixed", setting, wanted) + &own.collect::<String>();
+    }
     let fixed = |p: Parameter| wanted(p) && p.group() != Group::Law;
     let mut text = table("fixed", setting, fixed);
     if let Some(law) = setting.law() {

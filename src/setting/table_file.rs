@@ -16,7 +16,7 @@ use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
 /// A text in which the names of other files are replaced by their contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Inlined {
+pub struct Inlined {
     /// The text that is read and stored.
     pub text: String,
     /// What is told of the contents.
@@ -27,7 +27,7 @@ pub(crate) struct Inlined {
 
 /// What a named file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Named {
+pub enum Named {
     /// A system, as TOML.
     System,
     /// The columns of a measured curve.
@@ -36,7 +36,7 @@ pub(crate) enum Named {
 
 /// Why the contents of a named file could not be put into a text.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum NotInlined {
+pub enum NotInlined {
     /// At a place of the text.
     Here(SpecError),
     /// At a place of a named file.
@@ -64,7 +64,7 @@ impl Inlined {
     /// # Errors
     /// At the name, when the file cannot be read. Inside the named file, when it is not a valid
     /// system or curve.
-    pub(crate) fn new(
+    pub fn new(
         text: &str,
         read: impl FnOnce(&str, Named) -> Result<String, String>,
     ) -> Result<Self, NotInlined> {
@@ -108,7 +108,7 @@ impl Inlined {
     ///
     /// # Errors
     /// At the text of columns, when it is no valid curve.
-    pub(crate) fn pasted(text: &str) -> Result<Self, SpecError> {
+    pub fn pasted(text: &str) -> Result<Self, SpecError> {
         let Ok(document) = parse(text) else {
             return Ok(Self::unchanged(text));
         };
@@ -191,7 +191,7 @@ impl Inlined {
 
     /// An error in [`Inlined::text`], moved to its place in the original text.
     #[must_use]
-    pub(crate) fn in_original(&self, error: SpecError) -> SpecError {
+    pub fn in_original(&self, error: SpecError) -> SpecError {
         SpecError {
             span: error.span.map(|span| self.original(span)),
             ..error

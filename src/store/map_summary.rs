@@ -4,11 +4,11 @@ use hdf5::{Dataset, SliceOrIndex};
 
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::summary::{FieldSummary, StatusCounts};
 use super::values::Number;
 use crate::setting::Field;
 use crate::setting::field::Storage;
 use crate::sweep::described::schema::STATUS;
+use crate::sweep::described::summary::{FieldSummary, StatusCounts};
 
 impl MapFile {
     /// The summary of a field's values: from the map's attributes, or from all cells where it has

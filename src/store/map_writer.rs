@@ -19,7 +19,6 @@ use super::netcdf::Dimensions;
 use super::output::Output;
 use super::seal;
 use super::soundness::as_written;
-use super::summary::{CellsSummary, FieldSummary};
 use super::tiles::record::TileContent;
 use super::variables::{Layout, create, describe, put_all, put_fill};
 use crate::sweep::Plan;
@@ -28,6 +27,7 @@ use crate::sweep::described::curve_rows::CurveRows;
 use crate::sweep::described::curves::outer_values;
 use crate::sweep::described::root::Provenance;
 use crate::sweep::described::schema::{self, BEST, BOUNDARIES, root};
+use crate::sweep::described::summary::{CellsSummary, FieldSummary};
 use crate::sweep::described::{Described, Variable};
 use crate::sweep::plan::tile::Tile;
 use crate::text::in_hexadecimal;
@@ -155,7 +155,10 @@ impl<'p> MapWriter<'p> {
             .resize(fields.len(), FieldSummary::default());
         let told = self.cells.iter().zip(fields).zip(&self.summary.fields);
         for ((variable, field), summary) in told {
-            summary.put(&variable.dataset, field.storage(), cells)?;
+            put_all(
+                &variable.dataset,
+                &summary.attributes(field.storage(), cells),
+            )?;
             if summary.missing(cells) > 0 {
                 variable.put_fill()?;
             }
@@ -163,7 +166,7 @@ impl<'p> MapWriter<'p> {
         let (Some(status), counts) = (self.cells.last(), &self.summary.status) else {
             return Ok(());
         };
-        counts.put(&status.dataset, cells)?;
+        put_all(&status.dataset, &counts.attributes(cells))?;
         match counts.computed < cells {
             true => status.put_fill(),
             false => Ok(()),

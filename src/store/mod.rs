@@ -31,7 +31,7 @@
 //! - `soundness`: whether a map's file is as it was written: schema, checksums
 //! - `source`: where the pieces of a map come from; pieces in memory
 //! - `stamp`: the length, time and node of a file, to detect changes
-//! - `summary`: ranges of fields, counts of kinds and flags: counted with each tile, stored as
+//! - `summary`: ranges of fields, counts of kinds and flags, read from
 //!   attributes
 //! - `trace_reader`: recognises traces and reads them
 //! - `values`: reads values, chunk by chunk
@@ -70,10 +70,10 @@ pub(crate) mod trace_reader;
 mod values;
 mod variables;
 
+pub use crate::sweep::described::summary::{FieldSummary, StatusCounts};
 pub use best_reader::MapBest;
 pub use error::StoreError;
 pub use map_file::{MapAxis, MapFile};
 pub use map_writer::MapWriter;
 pub use output::Output;
-pub use summary::{FieldSummary, StatusCounts};
 pub use trace_reader::TraceFile;

@@ -148,17 +148,29 @@ pub fn evaluate(
     let found = each_attended(points, threads, attended, cells, work)?;
     let cells = points.iter().map(|points| points.delays.len()).sum();
     let mut all = TileBuffers::of_cells(&wanted.fields, cells);
-    let places = found
-        .iter()
-        .flat_map(|(cells, places)| places.iter().map(move |&place| (cells, place)));
-    for (at, (cells, place)) in places.enumerate() {
-        all.take_cells(at..at + 1, cells, place..place + 1);
+    let mut at = 0;
+    for (cells, places) in &found {
+        let Some(places) = places else {
+            let count = cells.status.len();
+            all.take_cells(at..at + count, cells, 0..count);
+            at += count;
+            continue;
+        };
+        for &place in places {
+            all.take_cells(at..at + 1, cells, place..place + 1);
+            at += 1;
+        }
     }
     Ok(all)
 }
 
-/// The cells of one setting, and the place of each delay among them; none after a stop.
-fn at_setting(points: &Points, wanted: &Wanted, stop: &Stop) -> Option<(TileBuffers, Vec<usize>)> {
+/// The cells of one setting, and the place of each delay among them where that is another; none
+/// after a stop.
+fn at_setting(
+    points: &Points,
+    wanted: &Wanted,
+    stop: &Stop,
+) -> Option<(TileBuffers, Option<Vec<usize>>)> {
     let (delays, places) = in_order(points.delays);
     let mut cells = TileBuffers::of_cells(&wanted.fields, delays.len());
     if delays.is_empty() {
@@ -173,6 +185,9 @@ fn at_setting(points: &Points, wanted: &Wanted, stop: &Stop) -> Option<(TileBuff
             return None;
         }
         let (first, count) = (tile.offset[0], tile.extent[0]);
+        if plan.tiles.len() == 1 && worker.buffers.status.len() == count {
+            return Some((worker.buffers, places));
+        }
         cells.take_cells(first..first + count, &worker.buffers, 0..count);
     }
     Some((cells, places))
@@ -185,12 +200,21 @@ fn along(delays: Vec<f64>) -> Axis {
     }
 }
 
-/// These delays in increasing order, each once, and the place of each of them there.
-fn in_order(delays: &[f64]) -> (Vec<f64>, Vec<usize>) {
-    let mut values = delays.to_vec();
-    values.sort_unstable_by(f64::total_cmp);
-    values.dedup();
-    let place = |delay: &f64| values.partition_point(|value| value < delay);
-    let places = delays.iter().map(place).collect();
-    (values, places)
+/// These delays in increasing order, each once, and the place of each of them there; none where
+/// they are in order already.
+fn in_order(delays: &[f64]) -> (Vec<f64>, Option<Vec<usize>>) {
+    if delays.is_sorted_by(|one, next| one < next) {
+        return (delays.to_vec(), None);
+    }
+    let mut order: Vec<(f64, usize)> = delays.iter().copied().zip(0..).collect();
+    order.sort_unstable_by(|(one, _), (other, _)| one.total_cmp(other));
+    let mut values: Vec<f64> = Vec::with_capacity(delays.len());
+    let mut places = vec![0; delays.len()];
+    for (delay, at) in order {
+        if values.last() != Some(&delay) {
+            values.push(delay);
+        }
+        places[at] = values.len() - 1;
+    }
+    (values, Some(places))
 }

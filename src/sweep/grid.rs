@@ -87,6 +87,11 @@ impl Grid {
         &self.plan
     }
 
+    /// The sweep, kept by whoever takes the grid apart.
+    pub(super) fn shared_plan(&self) -> Arc<Plan> {
+        Arc::clone(&self.plan)
+    }
+
     fn put_tile(&mut self, number: usize, from: &TileBuffers) {
         let tile = self.plan.tiles.tile(number);
         let strides = self.plan.tiles.strides();

@@ -14,8 +14,10 @@
 //! - `cells`: one thread's work on a tile or a plane
 //! - `described`: what maps and traces say, as plain data
 //! - `engine`: pieces over threads into a sink; the only file that imports rayon
+//! - `estimate`: what a sweep costs, from a timed sample of its pieces
 //! - `evaluate`: fields at any points, which need not be a grid
 //! - `events`: the events of a running sweep, for observers
+//! - `filled`: what a map or trace says with all its numbers, for programs that want no file
 //! - `grid`: a sweep computed into memory, for programs that want no file
 //! - `plan`: cells, tiles, planes of curves, the plan's hash
 //! - `sink`: where the computed pieces of a sweep go
@@ -23,8 +25,10 @@
 pub mod cells;
 pub mod described;
 pub mod engine;
+pub mod estimate;
 pub mod evaluate;
 pub mod events;
+pub mod filled;
 pub mod grid;
 pub mod plan;
 mod sink;

@@ -74,7 +74,9 @@ fn grown(folder: &Path) {
         let text = fs::read_to_string(own.join(file)).unwrap();
         assert!(text.contains(&package), "{file}");
         let grown = "name = \"slipmap\"\nversion = \"0.0.0-grown\"";
-        fs::write(folder.join(file), text.replace(&package, grown)).unwrap();
+        // The Python package is no part of the copy.
+        let alone = text.replace("members = [\"python\"]", "members = []");
+        fs::write(folder.join(file), alone.replace(&package, grown)).unwrap();
     }
     // The letter's sweeps are part of the program.
     for place in ["src", "sweeps"] {

@@ -9,7 +9,7 @@ const LAYERS: [&str; 16] = [
     "store", "maps", "report", "letter", "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
-const ROOMS: [&str; 8] = [
+const ROOMS: [&str; 10] = [
     "events",
     "plan",
     "cells",
@@ -17,7 +17,9 @@ const ROOMS: [&str; 8] = [
     "sink",
     "engine",
     "grid",
+    "filled",
     "evaluate",
+    "estimate",
 ];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -201,7 +203,7 @@ fn libraries_stay_in_their_rooms() {
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
         ("csv", "src/report/table, src/setting/measured/sheet.rs"),
-        ("encoding_rs", "src/cli/sweep_file.rs"),
+        ("encoding_rs", "src/setting/measured/decoded.rs"),
         ("maud", "src/letter/page.rs"),
         ("axum", "src/serve"),
         ("clap", "src/cli"),

@@ -30,7 +30,15 @@ fn share(text: &str) -> BasinShare {
     let plan = plan(text);
     let basin = plan.spec.basin.unwrap();
     let setting = plan.setting(&vec![0; plan.shape().len()]);
-    BasinShare::of(&Followed::of(&setting, &plan.spec.simulation, &basin, 2).unwrap())
+    BasinShare::of(
+        &Followed::of(
+            &setting,
+            &plan.spec.simulation,
+            &basin,
+            (2, &Arc::default()),
+        )
+        .unwrap(),
+    )
 }
 
 fn json(folder: &Folder, args: &[&str]) -> Value {

@@ -387,6 +387,48 @@ fn what_depends_on_the_delay_knows_no_other() {
     }
 }
 
+/// Polynomials as lists of coefficients, in files and in the tables of sweeps, are those of the
+/// expressions that say the same.
+#[test]
+fn lists_of_coefficients_are_as_good_as_expressions() {
+    let parameters = "[parameters]\nzeta = 0.05\nwidth = 0.1\n";
+    let lists = "P = [1, \"2*zeta\", \"1 + width\"]\nQ = [\"-width\"]\n";
+    let expressions = "P = \"s^2 + 2*zeta*s + (1 + width)\"\nQ = \"-width\"\n";
+    let rest = "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = false\n\
+        [axes]\nwidth = [0.0, 0.2, 0.4]\ntau = [0.5, 3.0, 8.0]\n";
+    let inline = "{ P = [1, \"2*zeta\", \"1 + width\"], Q = [\"-width\"], \
+        parameters = { zeta = 0.05, width = 0.1 } }";
+    let folder = Folder::with(&[
+        ("lists.toml", &*format!("{lists}{parameters}")),
+        ("expressions.toml", &format!("{expressions}{parameters}")),
+        ("by_file.toml", &format!("system = \"lists.toml\"\n{rest}")),
+        ("inline.toml", &format!("system = {inline}\n{rest}")),
+        (
+            "same.toml",
+            &format!("system = \"expressions.toml\"\n{rest}"),
+        ),
+    ]);
+    let at = |system: &str| json(&folder, &["--system", system, "--tau", "8", "--roots", "3"]);
+    let (mut by_lists, mut by_expressions) = (at("lists.toml"), at("expressions.toml"));
+    for answer in [&mut by_lists, &mut by_expressions] {
+        answer["inputs"]["system"].take();
+    }
+    assert_eq!(by_lists, by_expressions);
+    let tables = ["by_file", "inline", "same"].map(|sweep| {
+        let map = format!("{sweep}.h5");
+        let run = folder.run(&["run", "--quiet", &format!("{sweep}.toml"), "-o", &map]);
+        expect(&run, 0, "");
+        let told = out(&folder.run(&["info", &map]));
+        let shown = "P = s^2 + 2*zeta*s + (1 + width), Q = -width";
+        assert!(told.contains(shown), "{told}");
+        let table = out(&folder.run(&["export", &map]));
+        let rows = table.lines().filter(|line| !line.starts_with('#'));
+        rows.map(str::to_owned).collect::<Vec<_>>()
+    });
+    assert_eq!(tables[0].len(), 10);
+    assert!(tables.iter().all(|rows| *rows == tables[0]), "{tables:?}");
+}
+
 /// All descriptions within a value.
 fn descriptions(of: &Value, into: &mut String) {
     match of {
@@ -452,6 +494,14 @@ fn bad_systems(good: &str) -> Vec<String> {
             .replace('Q', "A")
             .replace("-zeta", "zeta*s^2"),
         "speed_axis = { name = \"speed\", unit = \"mph\" }".into(),
+        good.replace("\"-zeta\"", "3"),
+        good.replace("\"-zeta\"", "[]"),
+        good.replace("\"-zeta\"", "[1, nan]"),
+        good.replace("\"-zeta\"", "[1, [\"-zeta\"]]"),
+        good.replace("\"-zeta\"", "[1, \"-zeat\"]"),
+        good.replace("\"-zeta\"", "[1, \"zeta*s\"]"),
+        good.replace("\"-zeta\"", "[\"1/zeta\", 2]"),
+        good.replace("\"-zeta\"", &format!("[1{}]", ", 0".repeat(17))),
     ]
 }
 

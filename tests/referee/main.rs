@@ -25,6 +25,8 @@ mod steps;
 mod switch_on;
 mod tables;
 
+use std::sync::Arc;
+
 use slipmap::explore::basin::Followed;
 use slipmap::slip::outcome::Outcome;
 use slipmap::sweep::Plan;
@@ -285,7 +287,12 @@ fn starts_of_basins() {
             );
             let plan = Plan::new(sweep.parse().unwrap()).unwrap();
             let basin = plan.spec.basin.unwrap();
-            let followed = Followed::of(&plan.setting(&[0]), &plan.spec.simulation, &basin, 2);
+            let followed = Followed::of(
+                &plan.setting(&[0]),
+                &plan.spec.simulation,
+                &basin,
+                (2, &Arc::default()),
+            );
             for (_, start, outcome) in followed.unwrap().starts().step_by(2) {
                 starts.push((setting.clone(), over, start, outcome));
             }

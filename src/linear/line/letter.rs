@@ -68,6 +68,10 @@ impl Line for Crossings {
         Some(Crossings::count(self, tau, tolerance))
     }
 
+    fn n_unstable(&self, tau: f64) -> Option<u64> {
+        Some(Crossings::n_unstable(self, tau))
+    }
+
     fn n_at_zero_delay(&self) -> Option<u64> {
         Some(self.at_zero_delay)
     }

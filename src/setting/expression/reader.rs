@@ -69,9 +69,10 @@ pub(in crate::setting) fn names_in(text: &str) -> Vec<&str> {
 #[derive(Debug, Clone)]
 struct State<'n> {
     names: &'n [&'n str],
-    /// The name of the variable of polynomials; none where a number is read, which is to depend
-    /// on the names without kinks.
+    /// The name of the variable of polynomials; none where a number is read.
     variable: Option<&'static str>,
+    /// Whether functions may have kinks.
+    kinks: bool,
     depth: usize,
     /// Places of the signs whose operands are being read.
     signs: Vec<usize>,
@@ -201,13 +202,11 @@ fn named(input: &mut Input) -> Read<Part> {
     let before = input.checkpoint();
     multispace0.parse_next(input)?;
     let called = ahead(input).0 == Some('(');
-    let State {
-        names, variable, ..
-    } = input.state;
-    let functions: Vec<&str> = functions(variable.is_some()).collect();
+    let (names, variable, kinks) = (input.state.names, input.state.variable, input.state.kinks);
+    let functions: Vec<&str> = functions(kinks).collect();
     let known = format!("known: {}", functions.join(", "));
     match function_of(name) {
-        Some((_, true)) if variable.is_none() => {
+        Some((_, true)) if !kinks => {
             return Err(Misread::at(place, "min and max have kinks").help(known));
         }
         Some(of) => return function(input, name, of, called, place),
@@ -360,17 +359,19 @@ fn whole(input: &mut Input) -> Read<Part> {
 
 /// Reads `text` as a polynomial in s. Each of `names` stands for the value with its index.
 pub(in crate::setting) fn read(text: &str, names: &[&str]) -> Read<Tape> {
-    let (part, degree) = read_whole(text, names, Some(VARIABLE))?.lifted();
+    let (part, degree) = read_whole(text, names, (Some(VARIABLE), true))?.lifted();
     Ok(Tape::new(part.ops, degree))
 }
 
-/// Reads `text` as a number. Each of `names` stands for the value with its index.
-pub(in crate::setting) fn read_number(text: &str, names: &[&str]) -> Read<Tape> {
-    let part = read_whole(text, names, None)?;
+/// Reads `text` as a number that is to have no `kinks` unless they are allowed. Each of `names`
+/// stands for the value with its index.
+pub(in crate::setting) fn read_number(text: &str, names: &[&str], kinks: bool) -> Read<Tape> {
+    let part = read_whole(text, names, (None, kinks))?;
     Ok(Tape::new(part.ops, 0))
 }
 
-fn read_whole(text: &str, names: &[&str], variable: Option<&'static str>) -> Read<Part> {
+fn read_whole(text: &str, names: &[&str], of: (Option<&'static str>, bool)) -> Read<Part> {
+    let (variable, kinks) = of;
     if text.len() > LONGEST {
         let message = format!("an expression of {} bytes: at most {LONGEST}", text.len());
         return Err(Misread::at(0..text.len(), message));
@@ -380,6 +381,7 @@ fn read_whole(text: &str, names: &[&str], variable: Option<&'static str>) -> Rea
         state: State {
             names,
             variable,
+            kinks,
             depth: 0,
             signs: Vec::new(),
         },

@@ -3,22 +3,25 @@
 use std::ops::Range;
 
 use super::part::Read;
+use super::{Tape, coefficients, reader};
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// An expression as written in a text.
 pub(in crate::setting) struct Written {
-    pub name: &'static str,
+    pub name: String,
     pub text: String,
-    /// Where the string stands, with its quotes.
+    /// Where the string stands, with its quotes, or the list.
     pub span: Range<usize>,
     /// Where its first character stands; none where the written text differs from its value, as
-    /// with escapes.
-    from: Option<usize>,
+    /// with escapes, or was made from a list.
+    pub(super) from: Option<usize>,
+    /// The coefficients of a list that are expressions.
+    pub(super) coefficients: Vec<Self>,
 }
 
 impl Written {
     pub(in crate::setting) fn of(
-        name: &'static str,
+        name: String,
         entry: &Entry,
         whole: &str,
     ) -> Result<Self, SpecError> {
@@ -36,7 +39,17 @@ impl Written {
                 .map(|at| entry.span.start + at + skipped),
             span: entry.span.clone(),
             text,
+            coefficients: Vec::new(),
         })
+    }
+
+    /// The polynomial in s that is written here. Each of `names` stands for the value with its
+    /// index.
+    pub(in crate::setting) fn read_polynomial(&self, names: &[&str]) -> Result<Tape, SpecError> {
+        for coefficient in &self.coefficients {
+            coefficient.read(|text| coefficients::check(text, names))?;
+        }
+        self.read(|text| reader::read(text, names))
     }
 
     /// What `read` makes of the text. What it does not understand is reported in its place.

@@ -1,6 +1,7 @@
 //! A measured friction curve from a text of columns, whatever program wrote it.
 //!
 //! - `chosen`: which columns hold the speed and the friction
+//! - `decoded`: the bytes of a text as spreadsheets save it
 //! - `number`: numbers with a decimal point or a decimal comma
 //! - `options`: how a text is to be read, and how that is said
 //! - `points`: readings folded, sorted and averaged
@@ -10,6 +11,7 @@
 //! - `title`: what the title of a column says
 
 mod chosen;
+mod decoded;
 mod number;
 mod options;
 mod points;
@@ -30,6 +32,7 @@ use crate::model::table::{TableColumn, TableError};
 use crate::model::{FrictionLaw, Table};
 use crate::text::SpecError;
 
+pub use decoded::decoded;
 pub use options::{Columns, CurveOptions, Spoken};
 pub use points::{Direction, MeasuredPoint};
 pub use remark::Remark;

@@ -55,17 +55,7 @@ impl SweepFile<'_> {
     /// Checks a sweep of a system. Returns the parameters that are no axes.
     pub(super) fn check_system(&self, system: &GivenSystem) -> Result<Setting, SpecError> {
         self.check_degrees()?;
-        let tau = Parameter::Tau;
-        if !system.given.iter().any(|(of, _)| *of == tau) {
-            return Err(SpecError {
-                span: self.document.key("axes").cloned(),
-                ..SpecError::whole("tau is not given").help(format!(
-                    "tau: {}, {}",
-                    tau.long_name(),
-                    tau.allowed()
-                ))
-            });
-        }
+        system.check_delay(self.document.key("axes"))?;
         self.check_needs(&system.setting, Stage::Model)?;
         Ok(system.setting.clone())
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::parameter::{OwnParameter, WIDEST};
 use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
-use crate::setting::expression::{self, VARIABLE, Written, functions};
+use crate::setting::expression::{VARIABLE, Written, functions};
 use crate::setting::map_names;
 use crate::setting::parameter::Parameter;
 use crate::text::document::Document;
@@ -24,7 +24,7 @@ const POLYNOMIALS: [&str; 4] = ["P", "Q", "B", "A"];
 fn polynomial(written: &Written, names: &[&str]) -> Result<Expression, SpecError> {
     Ok(Expression {
         text: written.text.clone(),
-        tape: written.read(|text| expression::read(text, names))?,
+        tape: written.read_polynomial(names)?,
     })
 }
 
@@ -58,15 +58,17 @@ impl SystemModel {
             .take("parameters", read_parameters)
             .unwrap_or_default();
         let speed_axis = document.take("speed_axis", read_speed_axis);
-        let polynomials =
-            POLYNOMIALS.map(|name| document.take(name, |entry| Written::of(name, entry, whole)));
+        let polynomials = POLYNOMIALS
+            .map(|name| document.take(name, |entry| Written::polynomial(name, entry, whole)));
         document.finish()?;
         let names = parameters.iter().map(|(own, _)| &*own.name);
         let names: Vec<&str> = names.chain([Parameter::Tau.name()]).collect();
         let missing = |message: &str| SpecError {
             span: place.cloned(),
-            ..SpecError::whole(message)
-                .help("either P and Q, or the open loop B and the feedback A: expressions in s")
+            ..SpecError::whole(message).help(
+                "either P and Q, or the open loop B and the feedback A: expressions in s or \
+                     lists of coefficients",
+            )
         };
         let form = match &polynomials {
             [Some(p), Some(q), None, None] => {

@@ -5,6 +5,9 @@
 //! title = "Turning with one mode"         # optional
 //! P = "s^2 + 2*zeta*s + 1 + width"        # D = P + Q e^(−s tau)
 //! Q = "-width"
+//! # or as coefficients, the highest power first
+//! # P = [1, "2*zeta", "1 + width"]
+//! # Q = ["-width"]
 //! # or the feedback form, deg A < deg B: D = B(1 − R e^(−s tau)) − A e^(−s δ)(1 − e^(−s tau)),
 //! # with memory R and latency δ as parameters of every such system
 //! # B = "s^2 + b*s + 1"

@@ -4,7 +4,7 @@ use super::SystemModel;
 use crate::text::nearest::did_you_mean;
 
 /// All names, with their files.
-pub(crate) const SHIPPED: [(&str, &str); 8] = [
+pub const SHIPPED: [(&str, &str); 8] = [
     (
         "letter",
         include_str!("../../../sweeps/systems/letter.toml"),

@@ -60,7 +60,62 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
     ("P = \"s\"\nA = \"1\"", Some("A"), "not both"),
     ("P = \"s\"\nQ = \"1\"\nB = \"1\"", Some("B"), "not both"),
     ("B = \"s\"\nA = \"s\"", Some("\"s\""), "the smaller one"),
-    ("P = 3\nQ = \"1\"", Some("3"), "expected a string"),
+    ("P = 3\nQ = \"1\"", Some("3"), "or a list of coefficients"),
+    ("P = []\nQ = [1]", Some("[]"), "P: an empty list"),
+    (
+        "P = [1, nan]\nQ = [1]",
+        Some("nan"),
+        "P[1]: expected a finite",
+    ),
+    ("P = [1, 1e999]\nQ = [1]", Some("1e999"), "a finite number"),
+    (
+        "P = [1, [2]]\nQ = [1]",
+        Some("[2]"),
+        "P[1]: expected a number or",
+    ),
+    (
+        "P = [1]\nQ = [true]",
+        Some("true"),
+        "Q[0]: expected a number or",
+    ),
+    (
+        "P = [1]\nQ = [1, \"2*s\"]",
+        Some("s"),
+        "Q[1]: a coefficient with s",
+    ),
+    (
+        "P = [1, \"\"]\nQ = [1]",
+        Some("\"\""),
+        "P[1]: expected a number",
+    ),
+    ("P = [1, \"2*\"]\nQ = [1]", Some("\""), "found the end"),
+    (
+        "P = [1, \"2 stiff\"]\nQ = [1]",
+        Some("s"),
+        "expected an operator",
+    ),
+    (
+        "P = [\"lambda\"]\nQ = [1]",
+        Some("lambda"),
+        "P[0]: unknown name",
+    ),
+    // No element is more than one number: together these two would make an expression.
+    (
+        "P = [\"(1\", \"2)\"]\nQ = [1]",
+        Some("("),
+        "P[0]: this `(` is not",
+    ),
+    (
+        "P = [1]\nQ = [\"1) + (1\"]",
+        Some(")"),
+        "Q[0]: this `)` closes",
+    ),
+    (
+        "P = [1]\nQ = [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]",
+        Some("[1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]"),
+        "Q: a polynomial of degree 17 in s",
+    ),
+    ("B = [1, 2]\nA = [3, 0]", Some("[3, 0]"), "the smaller one"),
     ("P = \"s + x\"\nQ = \"1\"", Some("x"), "P: unknown name `x`"),
     ("P = \"s +\"\nQ = \"1\"", Some("\""), "found the end"),
     (
@@ -141,6 +196,83 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
         "expected \"tau\"",
     ),
 ];
+
+/// Coefficients, the highest power first, are the expression that stands beside them.
+#[test]
+fn a_list_of_coefficients_is_the_expression_that_it_says() {
+    let read = |p: &str, q: &str| -> SystemModel {
+        let text = format!("P = {p}\nQ = {q}\n[parameters]\nzeta = 0.05\nk = 0.2\n");
+        text.parse().unwrap_or_else(|e| panic!("{text}: {e:?}"))
+    };
+    let q = "[\"k\", \"zeta\"]";
+    for (list, expression) in [
+        ("[1, 0.04, 1.2]", "s^2 + 0.04*s + 1.2"),
+        ("[-1, -1, -1]", "-s^2 - s - 1"),
+        ("[-0.25, 0]", "-0.25*s"),
+        ("[3]", "3"),
+        ("[1, 0, -0.0, 2.5e-7, 1e300]", "s^4 + 2.5e-7*s + 1e300"),
+        ("[0x10, 1_000.0]", "16*s + 1000"),
+        // As in expressions, a power whose coefficient is zero is none.
+        ("[0, 0.0, 1, 2]", "s + 2"),
+        ("['-k']", "-k"),
+        ("['k/2^zeta', 'max(k, 1)']", "k/2^zeta*s + max(k, 1)"),
+        ("[0]", "0"),
+        ("[0, 0]", "0"),
+        ("[1, \"2*zeta\", \"1 + k\"]", "s^2 + 2*zeta*s + (1 + k)"),
+        (
+            "[\"k\", \" zeta \", '-k', \"2\"]",
+            "k*s^3 + zeta*s^2 + (-k)*s + 2",
+        ),
+    ] {
+        let (model, same) = (read(list, q), read(&format!("\"{expression}\""), q));
+        assert_eq!(model.expressions().next(), Some(("P", expression)));
+        assert_eq!(model, same, "{list}");
+        assert_eq!(model.to_toml().parse(), Ok(model.clone()), "{list}");
+    }
+    // Zeros before the highest power have no place: no degree follows from them.
+    let model = "B = [1, 2]\nA = [0, 0, 3]".parse::<SystemModel>();
+    assert!(model.is_ok(), "{model:?}");
+    let model = read("[1, 0.3, \"1/zeta\"]", q);
+    let mut at = model.defaults();
+    assert!(model.at(&mut at).is_ok());
+    at.own[0] = 0.0;
+    let error = model.at(&mut at).unwrap_err().to_string();
+    assert_eq!(error, "P: `1/zeta` has no finite value at this setting");
+}
+
+/// What an element may be by itself can be too deep or too long with the others.
+#[test]
+fn lists_that_are_too_deep_or_too_long_are_refused_as_a_whole() {
+    let deep = format!("\"{}1+1{}\", 2", "(".repeat(64), ")".repeat(64));
+    let long = format!("\"1{}\", ", "+1".repeat(700)).repeat(3) + "1";
+    for list in [deep, long] {
+        let text = format!("P = [{list}]\nQ = [1]");
+        let error = text.parse::<SystemModel>().expect_err(&text);
+        assert_eq!(error.span, Some(4..list.len() + 6), "{error:?}");
+    }
+}
+
+proptest::proptest! {
+    /// Numbers in a list are the coefficients, to the last bit.
+    #[test]
+    fn numbers_of_lists_keep_their_bits(of in proptest::collection::vec(
+        proptest::num::f64::NORMAL | proptest::num::f64::ZERO | proptest::num::f64::SUBNORMAL,
+        1..=17,
+    )) {
+        let text = format!("P = {of:?}\nQ = [1]");
+        let model: SystemModel = text.parse().unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        let Form::Direct([p, _]) = &model.form else {
+            panic!("{text}");
+        };
+        let p = p.at("P", &[], &mut Stacks::default());
+        let p = p.unwrap_or_else(|e| panic!("{text}: {e}"));
+        let mut expected: Vec<f64> = of.iter().rev().copied().collect();
+        while expected.len() > 1 && expected.last() == Some(&0.0) {
+            expected.pop();
+        }
+        proptest::prop_assert_eq!(p.coefficients(), &*expected);
+    }
+}
 
 #[test]
 fn what_does_not_fit_is_told_in_its_place() {

@@ -5,9 +5,9 @@ use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 
 use super::super::codec::{Chunk, ChunkCodec, decode_bytes};
-use super::super::summary::CellsSummary;
 use crate::sweep::described::best::BestRow;
 use crate::sweep::described::curve_rows::CurveRows;
+use crate::sweep::described::summary::CellsSummary;
 use crate::sweep::engine::{Computed, Encode};
 use crate::sweep::plan::pieces::Piece;
 

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::super::error::StoreError;
-use super::super::summary::StatusCounts;
 use super::folder::{is_tile_file, listed};
 use super::manifest::{self, Manifest};
 use super::reader::Checked;
 use super::record::Content;
 use super::shards;
+use crate::sweep::described::summary::StatusCounts;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
 

@@ -12,6 +12,7 @@
 //! - `group_names`: names of parameters in the group of curves
 //! - `root`: the attributes of a file: who made it, the sweep or case, the friction law
 //! - `schema`: names, meanings and format version
+//! - `summary`: the range of values of columns, and how many cells of each kind
 //! - `trace`: a motion over time and its events
 
 pub(crate) mod best;
@@ -23,6 +24,7 @@ pub(crate) mod curves;
 pub mod group_names;
 pub mod root;
 pub(crate) mod schema;
+pub mod summary;
 pub mod trace;
 
 use super::plan::Plan;
@@ -179,7 +181,7 @@ impl From<String> for Value {
 }
 
 /// An attribute with this name and value.
-fn attribute(name: &'static str, value: impl Into<Value>) -> Attribute {
+pub(super) fn attribute(name: &'static str, value: impl Into<Value>) -> Attribute {
     let value = value.into();
     Attribute { name, value }
 }

@@ -69,7 +69,7 @@ impl Memory {
     /// The most threads, up to `asked`, that stay within `limit` bytes; none where one thread does
     /// not.
     #[must_use]
-    pub(crate) fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
+    pub fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
         let fitting = limit.checked_sub(self.shared)? / self.per_thread;
         let threads = usize::try_from(fitting).unwrap_or(usize::MAX).min(asked);
         (threads > 0).then_some(threads)

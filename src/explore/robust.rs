@@ -1,30 +1,24 @@
-//! What a robust setting is to stand, `--robust`, and the search for it.
+//! What a robust setting is to stand, and the search for it.
 
 use serde::{Serialize, Serializer};
 
+use super::best::NotFound;
 use crate::answers::best::{BestSettings, Ranges, RobustSetting, robust_setting};
 use crate::answers::robust_to_fit::{error_of_fit, robust_to_fit};
 use crate::linear::best::SearchedGain;
 use crate::linear::margins::Changes;
 use crate::model::stop::Stop;
-use crate::report::numbers::rounded;
 use crate::setting::best_plane::parameter_of;
-use crate::setting::no_answer::NoAnswer;
 use crate::setting::{Parameter, Setting};
-
-use super::failure::Failure;
-use super::say;
+use crate::text::{Shown, SpecError, to_digits};
 
 /// The largest relative standard errors of a fit: of μ_K, so that gains keep their sign, and of μ′.
 const MOST_OF_GAIN: f64 = 0.3;
 const MOST_OF_SLOPE: f64 = 3.0;
 
-/// A setting that stands fewer standard errors than this is warned of.
-const FEW_ERRORS: f64 = 2.0;
-
 /// What a robust setting is to stand, as asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Spread {
+pub enum Spread {
     /// Gain, delay and μ′ are off by this part of them.
     Part(f64),
     /// Friction is off by what its fit leaves open.
@@ -33,7 +27,7 @@ pub(super) enum Spread {
 
 /// What may be off at a robust setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum MayBeOff {
+pub enum MayBeOff {
     /// Gain, delay and μ′ by this part of them.
     Part(f64),
     /// Friction by so many standard errors of its fit, as relative changes of gain, delay and μ′.
@@ -57,8 +51,11 @@ impl Spread {
     /// The name of [`Spread::Fit`].
     const FIT: &str = "fit";
 
-    /// Reads the value of the flag.
-    pub(super) fn read(text: &str) -> Result<Self, String> {
+    /// Reads a part such as 0.05, or the word `fit`.
+    ///
+    /// # Errors
+    /// Says what is expected.
+    pub fn read(text: &str) -> Result<Self, String> {
         if text.trim() == Self::FIT {
             return Ok(Self::Fit);
         }
@@ -75,7 +72,7 @@ impl Spread {
         gain: SearchedGain,
         ranges: &Ranges,
         stop: &Stop,
-    ) -> Result<Found, Failure> {
+    ) -> Result<Found, NotFound> {
         match self {
             Self::Part(part) => {
                 let (best, robust) = robust_setting(setting, gain, ranges, [part; 3], stop)?;
@@ -84,13 +81,6 @@ impl Spread {
             Self::Fit => {
                 let error = one_error(setting, gain)?;
                 let found = robust_to_fit(setting, gain, ranges, error, stop)?;
-                if found.robust.is_some() && found.errors < FEW_ERRORS {
-                    say::remark(format_args!(
-                        "warning: no setting stands more than {} standard errors of the fit: \
-                         measure more points near v0, or try the other --control",
-                        rounded(found.errors, 2)
-                    ));
-                }
                 let off = MayBeOff::Errors(found.errors, found.spread);
                 Ok((found.best, found.robust, Some(off)))
             }
@@ -98,40 +88,60 @@ impl Spread {
     }
 }
 
-/// One standard error of the fit of the friction law, as relative changes of gain, delay and μ′.
-fn one_error(setting: &Setting, gain: SearchedGain) -> Result<Changes, Failure> {
-    let both = |p: Parameter| setting.get(p) != 0.0 && p != parameter_of(gain);
-    if let Some(other) = [Parameter::AlphaV, Parameter::AlphaN]
-        .into_iter()
-        .find(|p| both(*p))
-    {
-        let message = format!(
-            "--robust fit is for one gain, and {} is another",
-            other.name()
-        );
-        return Err(Failure::bad_input_with_help(
-            message,
-            "leave it out, or --robust 0.05",
-        ));
+/// Why there is no setting that is robust against the errors of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotRobust {
+    /// This gain acts beside the one that is searched.
+    TwoGains(Parameter),
+    /// The friction law was not fitted.
+    NotFitted,
+    /// The standard error of this number is so large a part of it.
+    TooWide(Parameter, f64),
+}
+
+impl NotRobust {
+    /// The same in words, with advice.
+    #[must_use]
+    pub fn told(&self) -> SpecError {
+        let (message, help) = match self {
+            Self::TwoGains(other) => (
+                format!(
+                    "robust fit is for one gain, and {} is another",
+                    other.name()
+                ),
+                "leave it out, or take robust 0.05",
+            ),
+            Self::NotFitted => (
+                "robust fit: the friction law was not fitted".to_owned(),
+                "slipmap fit DATA.csv --v0 V --save fit.toml writes a setting with a fitted law",
+            ),
+            Self::TooWide(of, part) => {
+                let (name, percent) = (of.name(), Shown(to_digits(100.0 * part, 2)));
+                (
+                    format!("robust fit: the standard error of {name} is {percent} % of it"),
+                    "measure more points near v0",
+                )
+            }
+        };
+        SpecError::whole(message).help(help)
     }
-    let of = error_of_fit(setting, gain).map_err(NoAnswer::from)?;
-    let of = of.ok_or_else(|| {
-        Failure::bad_input_with_help(
-            "--robust fit: the friction law was not fitted",
-            "slipmap fit DATA.csv --v0 V --save fit.toml, then --setting fit.toml",
-        )
-    })?;
+}
+
+/// One standard error of the fit of the friction law, as relative changes of gain, delay and μ′.
+fn one_error(setting: &Setting, gain: SearchedGain) -> Result<Changes, NotFound> {
+    let both = |p: &Parameter| setting.get(*p) != 0.0 && *p != parameter_of(gain);
+    let gains = [Parameter::AlphaV, Parameter::AlphaN];
+    if let Some(other) = gains.into_iter().find(both) {
+        return Err(NotFound::Robust(NotRobust::TwoGains(other)));
+    }
+    let of = error_of_fit(setting, gain)?.ok_or(NotFound::Robust(NotRobust::NotFitted))?;
     let [of_gain, _, of_slope] = of;
-    for (name, part, most) in [
-        ("mu_k", of_gain, MOST_OF_GAIN),
-        ("mu_prime", of_slope, MOST_OF_SLOPE),
+    for (parameter, part, most) in [
+        (Parameter::MuK, of_gain, MOST_OF_GAIN),
+        (Parameter::MuPrime, of_slope, MOST_OF_SLOPE),
     ] {
         if !(0.0..=most).contains(&part) {
-            let percent = rounded(100.0 * part, 2);
-            return Err(Failure::failed_with_help(
-                format!("--robust fit: the standard error of {name} is {percent} % of it"),
-                "measure more points near v0",
-            ));
+            return Err(NotFound::Robust(NotRobust::TooWide(parameter, part)));
         }
     }
     Ok(of)

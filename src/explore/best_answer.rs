@@ -1,28 +1,30 @@
-//! What `slipmap best` prints with `--json`.
+//! The best settings as plain data.
 
+use serde::Serialize;
+
+use super::best::{Control, Recommended};
+use super::margins::Margins;
+use super::point::{Point, SystemPoint};
+use super::robust::MayBeOff;
+use super::vc::CriticalVelocity;
 use crate::answers::best::{BestRegion, Ranges, RobustSetting};
-use crate::explore::margins::Margins;
-use crate::explore::point::{Point, SystemPoint};
-use crate::explore::vc::CriticalVelocity;
 use crate::linear::best::Optimum;
 use crate::sweep::relaxation_time;
-use serde::Serialize;
-use utoipa::ToSchema;
 
-use super::recommended::{Control, Recommended};
-use super::robust::MayBeOff;
-
-/// The JSON of a search.
+/// What a search found.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-pub(super) enum Answer {
+pub enum BestSetting {
+    /// Of the block on its spring.
     Block(Box<BestAnswer>),
+    /// Of a system from a file.
     System(Box<SystemBest>),
 }
 
-/// The JSON of a search. Infinite numbers are written as null.
-#[derive(Debug, Serialize, ToSchema)]
-pub(super) struct BestAnswer {
+/// What a search of the block found. Infinite numbers are written as null.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct BestAnswer {
     mu_prime: f64,
     mu_k: f64,
     control: Control,
@@ -33,19 +35,20 @@ pub(super) struct BestAnswer {
     regions_left_out: usize,
     /// The setting whose slowest decay is fastest within a spread; null where none is asked for,
     /// and where no setting stays stable.
-    #[schema(required)]
+    #[cfg_attr(feature = "serve", schema(required))]
     robust: Option<RobustOut>,
     /// How far the recommended setting, the robust one where there is one, is from the boundary of
     /// stability.
     margins: Margins,
     /// The critical velocity of the recommended setting; null without a friction law.
-    #[schema(required)]
+    #[cfg_attr(feature = "serve", schema(required))]
     vc: Option<CriticalVelocity>,
 }
 
-/// The JSON of a search of a system from a file.
-#[derive(Debug, Serialize, ToSchema)]
-pub(super) struct SystemBest {
+/// What a search of a system from a file.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct SystemBest {
     /// The parameter that is searched beside the delay.
     search: String,
     searched: SystemRanges,
@@ -58,7 +61,8 @@ pub(super) struct SystemBest {
 }
 
 /// A robust setting.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct RobustOut {
     /// The largest of `spreads`.
     spread: f64,
@@ -66,7 +70,7 @@ struct RobustOut {
     spreads: [f64; 3],
     /// How many standard errors of the fit of the friction law these are; null where it is not by a
     /// fit that they were asked for.
-    #[schema(required)]
+    #[cfg_attr(feature = "serve", schema(required))]
     standard_errors: Option<f64>,
     alpha: f64,
     tau: f64,
@@ -109,23 +113,26 @@ impl RobustOut {
 /// The types of ranges, regions and optima, where what is searched has the name `value`.
 macro_rules! of_searched {
     ($ranges:ident, $region:ident, $optimum:ident, $(#[$about:meta])* $value:ident) => {
-        #[derive(Debug, Serialize, ToSchema)]
+        #[derive(Debug, Serialize)]
+        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
         struct $ranges {
             $(#[$about])*
-            #[schema(value_type = [f64; 2])]
+            #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
             $value: (f64, f64),
-            #[schema(value_type = [f64; 2])]
+            #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
             tau: (f64, f64),
         }
 
-        #[derive(Debug, Serialize, ToSchema)]
+        #[derive(Debug, Serialize)]
+        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
         struct $region {
             region: $ranges,
             #[serde(flatten)]
             best: $optimum,
         }
 
-        #[derive(Debug, Serialize, ToSchema)]
+        #[derive(Debug, Serialize)]
+        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
         struct $optimum {
             $(#[$about])*
             $value: f64,
@@ -172,14 +179,15 @@ of_searched!(
 );
 
 /// What is told of a best setting besides the value of what is searched.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct OptimumNumbers {
     tau: f64,
     abscissa: f64,
     frequency: f64,
     frequencies: Vec<f64>,
     /// −1/abscissa; null where the setting is not stable.
-    #[schema(required)]
+    #[cfg_attr(feature = "serve", schema(required))]
     relaxation_time: Option<f64>,
     kind: &'static str,
     certified: bool,
@@ -201,9 +209,10 @@ impl From<&Optimum> for OptimumNumbers {
     }
 }
 
-impl Answer {
+impl BestSetting {
     /// The answer for what was found.
-    pub(super) fn of(told: &Recommended) -> Self {
+    #[must_use]
+    pub fn of(told: &Recommended) -> Self {
         let found = &told.found;
         match &told.point {
             Point::Block(point) => Self::Block(Box::new(BestAnswer {
