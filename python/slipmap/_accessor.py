@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._answers import Point
+from ._catalogue import fields
 from ._error import InputError
 
 
@@ -137,13 +138,12 @@ class MapAccessor:
         return ax
 
     def _fill(self, ax: Any, cells: Any, name: str, drawn: list[str]) -> None:
-        rows = {row["name"]: row for row in _core.catalogue("fields")}
-        both = rows.get(name, {}).get("stable_sign") is not None
+        sign = fields().get(name, {}).get("stable_sign")
         finite = np.abs(cells.values[np.isfinite(cells.values)])
         scale: dict[str, Any] = {}
-        if both and finite.size and finite.max() > 0:
+        if sign is not None and finite.size and finite.max() > 0:
             most = float(np.quantile(finite, 0.98)) or float(finite.max())
-            scale = {"cmap": "BrBG_r" if rows[name]["stable_sign"] < 0 else "BrBG", "vmin": -most, "vmax": most}
+            scale = {"cmap": "BrBG_r" if sign < 0 else "BrBG", "vmin": -most, "vmax": most}
         drawing = ax.pcolormesh(cells[drawn[0]], cells[drawn[1]], cells, shading="nearest", **scale)
         ax.figure.colorbar(drawing, ax=ax, label=self._label(name))
         ax.set(xlabel=self._label(drawn[0]), ylabel=self._label(drawn[1]))
@@ -173,8 +173,7 @@ class MapAccessor:
     def _label(self, name: str) -> str:
         of = self._cells[name].attrs
         unit = of.get("units", "1")
-        short = (row["short_name"] for row in _core.catalogue("fields") if row["name"] == name)
-        said = next(short, of.get("long_name", name))
+        said = fields().get(name, {}).get("short_name", of.get("long_name", name))
         return f"{said}{'' if unit == '1' else f' / {unit}'}"
 
     @staticmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 from . import _core
@@ -20,3 +21,9 @@ def catalogue(kind: str) -> list[dict[str, Any]]:
     ['coulomb', 'weakening', 'stribeck']
     """
     return list(_core.catalogue(kind))
+
+
+@lru_cache(maxsize=1)
+def fields() -> dict[str, dict[str, Any]]:
+    """The rows of all fields by their names."""
+    return {row["name"]: row for row in _core.catalogue("fields")}

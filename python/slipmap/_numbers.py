@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
-from functools import lru_cache
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, _ranges
+from ._catalogue import fields
 from ._error import InputError
 from ._nouns import numbers, subject, taken
 
 _FEW = 4096
-_MOST_THREADS = 4096
 
 
 class _Asked:
@@ -58,11 +56,9 @@ class _Asked:
         return 1 if self.shape is None else int(np.prod(self.shape))
 
     def threads(self, asked: int | None) -> int:
-        if asked is None:
-            return 1 if self.size() < _FEW else os.cpu_count() or 1
-        if not 1 <= asked <= _MOST_THREADS:
-            raise InputError(f"threads = {asked} is outside its range: 1 to {_MOST_THREADS}")
-        return min(asked, max(1, self.size()))
+        if asked is None and self.size() < _FEW:
+            return 1
+        return min(_ranges.threads(asked), max(1, self.size()))
 
     def explain(self) -> None:
         """Raises what a file of these parameters would be told, with its place."""
@@ -84,11 +80,6 @@ class _Asked:
         if self.like is None:
             return array
         return self.like.copy(data=array).rename(name).assign_attrs(long_name=long_name, units=unit)
-
-
-@lru_cache(maxsize=1)
-def _long_names() -> dict[str, str]:
-    return {row["name"]: row["long_name"] for row in _core.catalogue("fields")}
 
 
 def n_unstable(*, threads: int | None = None, **at: Any) -> Any:
@@ -114,7 +105,7 @@ def n_unstable(*, threads: int | None = None, **at: Any) -> Any:
     """
     asked = _Asked(at)
     flat = asked.call(_core.n_unstable, asked.at, asked.threads(threads))
-    return asked.shaped(flat, "n_unstable", _long_names()["n_unstable"] if asked.like is not None else "", "1")
+    return asked.shaped(flat, "n_unstable", fields()["n_unstable"]["long_name"] if asked.like is not None else "", "1")
 
 
 def abscissa(*, threads: int | None = None, **at: Any) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Mapping
 from typing import Any, TypeVar
@@ -10,10 +9,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _ranges
 from ._answers import Answer, Basin, Best, CriticalVelocity, Margins, Point
 from ._error import InputError
 from ._nouns import taken
+from ._ranges import whole
 from ._text import quoted
 
 A = TypeVar("A", bound=Answer)
@@ -27,13 +27,6 @@ def _text(at: dict[str, Any], head: str = "") -> str:
             raise TypeError(f"{name}: one setting takes one number; evaluate() takes arrays")
     rows = {name: of.item() if hasattr(of, "item") else of for name, of in at.items()}
     return head + subject.text(rows)
-
-
-def _whole(name: str, of: int, least: int, most: int) -> int:
-    """A whole number in its range."""
-    if not least <= of <= most:
-        raise InputError(f"{name} = {of} is outside its range: {least} to {most}")
-    return int(of)
 
 
 def _asked(kind: type[A], name: str, text: str, **options: Any) -> A:
@@ -66,7 +59,7 @@ def point(*, roots: int = 16, **at: Any) -> Point:
     >>> found.roots[0].round(4)
     np.complex128(-0.0411+1.1728j)
     """
-    return _asked(Point, "point", _text(at), roots=_whole("roots", roots, 1, 64))
+    return _asked(Point, "point", _text(at), roots=whole("roots", roots, 1, 64))
 
 
 def stable_delays(*, most: int = 1000, **at: Any) -> NDArray[np.float64]:
@@ -82,7 +75,7 @@ def stable_delays(*, most: int = 1000, **at: Any) -> NDArray[np.float64]:
     >>> stable_delays(mu_prime=-0.3, alpha_v=-0.33).round(3)
     array([[2.342, 4.46 ]])
     """
-    most = _whole("most", most, 1, 100_000)
+    most = whole("most", most, 1, 100_000)
     at.setdefault("tau", 0.0)
     found = point(roots=1, **at).stable_delays
     if found is None:
@@ -180,5 +173,5 @@ def basin(*, over: str = "state", starts: int = 4096, threads: int | None = None
     >>> basin(friction=law, v0=0.9, alpha_v=-0.33, tau=4.15, starts=64).basin_share
     1.0
     """
-    used = _whole("threads", (os.cpu_count() or 1) if threads is None else threads, 1, 4096)
-    return _asked(Basin, "basin", _text(at), over=over, starts=_whole("starts", starts, 64, 1 << 20), threads=used)
+    used = _ranges.threads(threads)
+    return _asked(Basin, "basin", _text(at), over=over, starts=whole("starts", starts, 64, 1 << 20), threads=used)

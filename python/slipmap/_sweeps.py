@@ -8,7 +8,7 @@ from collections.abc import Callable
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, cast
 
-from . import _core
+from . import _core, _ranges
 from ._answers import Plan
 from ._error import InputError
 from ._nouns import taken
@@ -80,9 +80,7 @@ def run(
     [2, 0]
     """
     _xarray()
-    used = (os.cpu_count() or 1) if threads is None else threads
-    if not 1 <= used <= 4096:
-        raise InputError(f"threads = {used} is outside its range: 1 to 4096")
+    used = _ranges.threads(threads)
     most = _machine() if memory is None else _bytes(memory)
     with _Bar(progress) as bar:
         groups = _core.run(read(sweep), used, most, _history("run"), bar)

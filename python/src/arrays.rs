@@ -81,8 +81,8 @@ impl Asked {
             }
             varied.push(of);
         }
-        let optional: Vec<Parameter> = varied.iter().filter_map(|of| of.of.known()).collect();
-        let optional: Vec<Parameter> = optional.into_iter().chain(open.iter().copied()).collect();
+        let known = varied.iter().filter_map(|of: &Varied| of.of.known());
+        let optional: Vec<Parameter> = known.chain(open.iter().copied()).collect();
         // What only a system or a formula has is needed: a number of each that can stand together.
         let own: Vec<&Varied> = varied.iter().filter(|of| of.of.known().is_none()).collect();
         let setting = match own.is_empty() {

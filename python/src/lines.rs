@@ -44,7 +44,7 @@ impl Varied {
         chosen.or(self.of.default_value()).unwrap_or(1.0)
     }
 
-    /// All numbers that are known.
+    /// The numbers that are known.
     pub(crate) fn known(&self) -> impl Iterator<Item = f64> {
         self.values.iter().copied().filter(|value| !value.is_nan())
     }
@@ -59,7 +59,7 @@ pub(crate) struct Lines {
     delays: Vec<f64>,
     /// Whether a delay is NaN.
     pub(crate) some_unknown: bool,
-    /// The same delays, with 0 in the place of NaN; empty where there is none.
+    /// The delays with 0 in the place of NaN; empty where no delay is NaN.
     known: Vec<f64>,
     /// How many delays each line has.
     pub(crate) length: usize,

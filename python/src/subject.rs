@@ -48,11 +48,6 @@ impl Subject {
         })
     }
 
-    /// The unit of a parameter, "1" where it has none; none of an unknown one.
-    fn unit(&self, name: &str) -> Option<String> {
-        self.quantity(name).map(|of| of.unit(&self.units))
-    }
-
     /// The names of the parameters that belong to the friction law.
     fn of_law(&self) -> Vec<String> {
         let own = self.setting.own().map(|(own, _)| own.name.clone());

@@ -100,7 +100,7 @@ pub enum NotRobust {
 }
 
 impl NotRobust {
-    /// The same in words, with advice.
+    /// The error in words, with advice.
     #[must_use]
     pub fn told(&self) -> SpecError {
         let (message, help) = match self {

@@ -42,7 +42,7 @@ impl SpecError {
         }
     }
 
-    /// The same error with advice.
+    /// The error with advice.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());

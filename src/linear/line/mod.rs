@@ -47,7 +47,7 @@ pub trait Line {
     /// or nothing is known.
     fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Option<Count>;
 
-    /// The same number without asking how near a crossing is.
+    /// The number of unstable roots, as [`Line::count`], without asking how near a crossing is.
     fn n_unstable(&self, tau: f64) -> Option<u64> {
         let count = self.count(tau, MarginalTolerance::default());
         count.map(|count| count.n_unstable)
