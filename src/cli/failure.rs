@@ -19,6 +19,8 @@ pub(super) enum Failure {
     Failed(Report),
     /// Exit code 2: the input is invalid.
     BadInput(Report),
+    /// Exit code 3: another run works on this map.
+    Busy(Report),
     /// Exit code 0: the reader of the output has gone.
     ReaderGone,
     /// Exit code 129, 130 or 143: a signal.
@@ -101,6 +103,7 @@ impl Failure {
             Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Failed(report) => (report, 1),
             Self::BadInput(report) => (report, 2),
+            Self::Busy(report) => (report, 3),
         };
         say::coloured(format_args!("{report:?}"));
         ExitCode::from(code)
@@ -129,16 +132,20 @@ impl From<StoreError> for Failure {
                 "the `slipmap run` that began these tiles writes it anew and goes on; --fresh \
                  starts over, dropping them; -o writes elsewhere",
             ),
+            StoreError::Locked { .. } => {
+                Some("`slipmap status MAP.h5` says how far it is; once it has ended, try again")
+            }
             _ => None,
         };
-        let other_tiles = help.is_some();
         if let Some(help) = help {
             diagnostic = diagnostic.with_help(help);
         }
         let report = Report::new(diagnostic);
         match error {
-            _ if other_tiles => Self::BadInput(report),
-            StoreError::Foreign { .. }
+            StoreError::Locked { .. } => Self::Busy(report),
+            StoreError::OtherTiles { .. }
+            | StoreError::Manifest { .. }
+            | StoreError::Foreign { .. }
             | StoreError::NotAMap { .. }
             | StoreError::NotATrace { .. }
             | StoreError::Io { action: "open", .. } => Self::BadInput(report),

@@ -143,7 +143,8 @@ const LAST: usize = 1000;
     version = format!("{} ({})", crate::VERSION, crate::REVISION)
 )]
 #[command(
-    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
+    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 3 another run works on this map, \
+        129, 130 or 143 interrupted."
 )]
 struct Cli {
     /// Colours in help, errors, warnings and previews

@@ -3,6 +3,7 @@
 //! Slurm.
 #![cfg(unix)]
 
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -143,14 +144,23 @@ fn the_pods_of_a_kubernetes_job_compute_shards() {
 }
 
 /// A task of a job array, as Slurm runs it.
-fn task(work: &Work, id: u32, (first, step, count): (u32, u32, u32), arguments: &[&str]) -> Output {
+fn task(work: &Work, id: u32, array: (u32, u32, u32), arguments: &[&str]) -> Output {
+    program::output(&mut task_command(work, id, array, arguments))
+}
+
+fn task_command(
+    work: &Work,
+    id: u32,
+    (first, step, count): (u32, u32, u32),
+    arguments: &[&str],
+) -> Command {
     let mut task = work.command(script("slurm/shard.sbatch"), arguments);
     task.env("SLURM_ARRAY_TASK_ID", id.to_string())
         .env("SLURM_ARRAY_TASK_MIN", first.to_string())
         .env("SLURM_ARRAY_TASK_STEP", step.to_string())
         .env("SLURM_ARRAY_TASK_COUNT", count.to_string())
         .env("SLURM_CPUS_PER_TASK", "2");
-    program::output(&mut task)
+    task
 }
 
 #[test]
@@ -189,4 +199,48 @@ fn bad_input_of_a_task_is_not_tried_again() {
     assert_eq!(ended.status.code(), Some(2));
     let ended = task(&work, 1, (1, 1, 1), &["sweep.toml"]);
     assert_eq!(ended.status.code(), Some(2));
+}
+
+/// Exit code 3 says that the work is being done, by whoever holds the lock; Slurm tries again later.
+#[test]
+fn what_another_run_works_on_has_an_exit_code_of_its_own() {
+    let work = Work::new();
+    for shard in ["1/2", "2/2"] {
+        work.run(&["run", "sweep.toml", "-o", "map.h5", "--shard", shard]);
+    }
+    let held = |name: &str| {
+        let lock = std::fs::File::create(work.0.path().join(name)).unwrap();
+        lock.lock().unwrap();
+        lock
+    };
+    let refused = |arguments: &[&str]| {
+        let output = program::output(&mut work.command("slipmap", arguments));
+        program::expect(&output, 3, "another run is writing");
+    };
+    let of_shard = held("map.h5.tiles/2-of-2/lock");
+    let run = ["run", "sweep.toml", "-o", "map.h5", "--shard", "2/2"];
+    refused(&run);
+    refused(&[&run[..], &["--fresh"]].concat());
+    let scontrol = "#!/bin/sh\necho \"$@\" >requeued\n";
+    let path = work.0.path().join("scontrol");
+    std::fs::write(&path, scontrol).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut array = task_command(&work, 2, (1, 1, 2), &["sweep.toml", "map.h5"]);
+    let paths = std::env::var("PATH").unwrap();
+    let program_folder = Path::new(env!("CARGO_BIN_EXE_slipmap")).parent().unwrap();
+    let paths = format!(
+        "{}:{}:{paths}",
+        work.0.path().display(),
+        program_folder.display()
+    );
+    array.env("PATH", paths).env("SLURM_ARRAY_JOB_ID", "17");
+    assert_eq!(program::output(&mut array).status.code(), Some(3));
+    let requeued = std::fs::read_to_string(work.0.path().join("requeued")).unwrap();
+    assert_eq!(requeued, "requeue 17_2\n");
+    drop(of_shard);
+    let of_map = held(".map.h5.slipmap-lock");
+    refused(&["merge", "map.h5"]);
+    drop(of_map);
+    work.run(&["merge", "map.h5"]);
+    work.check_map();
 }
