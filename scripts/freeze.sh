@@ -51,7 +51,7 @@ kept() {
     local file
     file=said/$(printf '%s' "$1" | tr -c 'A-Za-z0-9_=.,-' '_' | cut -c 1-200)
     sed -E -e "s/${revision:-no revision}/REVISION/g" -e 's/[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}Z/TIME/g' \
-        -e '/^time  .* tiles timed$/d' -e 's/"(seconds|tiles_timed)":(\[[^]]*\]|[^,}]*)/"\1":0/g' >"$file"
+        -e '/^time  .* (tiles|cells) timed$/d' -e 's/"(seconds|(tiles|cells)_timed)":(\[[^]]*\]|[^,}]*)/"\1":0/g' >"$file"
     printf '%s  %s\n' "$(sum_of "$file")" "$1"
 }
 
@@ -259,7 +259,7 @@ SYSTEMS
     done
     both plan fig3a.toml
     for words in fig2a fig4 rate_state_load velocity_memory_late turning_lobes vc_load basin_share; do
-        both plan "$words.toml" --threads=2
+        both plan "$words.toml" --threads=2 --memory=500MB
     done
     told best --mu-prime=-0.3 --robust=0.05 --save=saved.toml
     both point --setting=saved.toml

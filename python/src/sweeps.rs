@@ -90,7 +90,7 @@ pub(crate) fn plan<'py>(py: Python<'py>, text: &str, timed: bool) -> PyResult<Bo
             let costs = wait(py, None, |stop, _| {
                 Costs::of(&plan, |_, _| 0, &Stop::when(stop))
             })?;
-            Some(costs.seconds().0)
+            Some(costs.seconds()[1])
         }
         false => None,
     };

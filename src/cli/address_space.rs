@@ -103,14 +103,15 @@ pub(super) fn left() -> Option<u64> {
     Some(limit.saturating_sub(pages.unwrap_or(0).saturating_mul(page())))
 }
 
+/// The bytes of a page of memory.
 #[cfg(unix)]
-fn page() -> u64 {
+pub(super) fn page() -> u64 {
     // SAFETY: the call takes a number alone.
     let size = unsafe { libc::sysconf(libc::_SC_PAGESIZE) };
     u64::try_from(size).unwrap_or(4096)
 }
 
 #[cfg(not(unix))]
-fn page() -> u64 {
+pub(super) fn page() -> u64 {
     4096
 }

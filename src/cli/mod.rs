@@ -9,6 +9,7 @@
 //! - `best_text`: the output of `slipmap best` for people
 //! - `case_facts`: the facts of a case, before it is simulated and from its trace
 //! - `cell`: a cell of a map instead of flags or a case file
+//! - `cgroup`: limits on memory of control groups
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
 //! - `control`: controls by name
@@ -27,6 +28,7 @@
 //! - `limit_args`: the flags for a point of the limit of a short delay
 //! - `man`: `slipmap man`
 //! - `margins`: `slipmap margins`
+//! - `memory`: the memory that a run may take, and the threads that stay within it
 //! - `merge`: `slipmap merge`
 //! - `motion_text`: the outcome of a motion, in words and numbers for people
 //! - `open`: opens a map for a command that reads it
@@ -70,6 +72,7 @@ mod best;
 mod best_text;
 mod case_facts;
 mod cell;
+mod cgroup;
 mod colours;
 mod completions;
 mod control;
@@ -88,6 +91,7 @@ mod law_args;
 mod limit_args;
 mod man;
 mod margins;
+mod memory;
 mod merge;
 mod motion_text;
 mod open;
@@ -142,10 +146,8 @@ const LAST: usize = 1000;
 #[command(
     version = format!("{} ({})", crate::VERSION, crate::REVISION)
 )]
-#[command(
-    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 3 another run works on this map, \
-        129, 130 or 143 interrupted."
-)]
+#[command(after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, \
+        3 another run works on this map, 129, 130 or 143 interrupted.")]
 struct Cli {
     /// Colours in help, errors, warnings and previews
     #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN",

@@ -18,9 +18,10 @@ use utoipa::ToSchema;
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
+use super::memory::{self, Allowed};
 use super::output::{warn_beyond_curve, warn_of_idle_delay};
 use super::plan_case;
-use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
+use super::run::{default_threads, parse_threads};
 use super::say::Rows;
 use super::sweep_file::{Described, read_sweep_or_case};
 
@@ -40,9 +41,9 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
     /// The most memory to plan for, such as 500MB or 2GiB: fewer threads are used if they would
-    /// take more
-    #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
-    memory: u64,
+    /// take more [default: half of what is free, at least 500MB]
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse)]
+    memory: Option<u64>,
     /// One JSON object on standard output; bytes and seconds
     #[arg(long)]
     json: bool,
@@ -71,12 +72,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     warn_of_idle_delay(plan.spec.has_idle_delay());
     warn_beyond_curve(plan.spec.curve_remark());
     let asked = args.threads.unwrap_or_else(default_threads);
-    let threads = threads_within(&plan, args.memory, asked)?;
-    let facts = Facts::of(&plan, threads);
+    let allowed = Allowed::of(args.memory, 1);
+    let threads = allowed.threads(&plan, asked)?;
+    let facts = Facts::of(&plan, threads, allowed.bytes);
     match args.json {
         true => {
             let inputs = Inputs::default().and("sweep", &args.sweep);
-            let inputs = inputs.and("threads", threads).and("memory", args.memory);
+            let inputs = inputs.and("threads", threads).and("memory", allowed.bytes);
             json::print(&inputs, &facts)
         }
         false => facts.tell(),
@@ -116,14 +118,18 @@ struct Facts {
     bytes_on_disk: u64,
     /// The most memory that these threads take, in bytes.
     memory: u64,
+    /// The memory that a run may take, in bytes; more threads would take more.
+    memory_allowed: u64,
     threads: usize,
-    /// Seconds on these threads, at least, about and at most, from the tiles that were timed.
+    /// Seconds on these threads, at least, about and at most, from the cells that were timed.
     seconds: [f64; 3],
+    /// Tiles that were timed, wholly or in part, and their timed cells.
     tiles_timed: usize,
+    cells_timed: u64,
 }
 
 impl Facts {
-    fn of(plan: &Plan, threads: usize) -> Self {
+    fn of(plan: &Plan, threads: usize, memory_allowed: u64) -> Self {
         let mut encoder = RecordEncoder::default();
         let stored =
             |piece: Piece, computed: Computed<'_>| encoder.encode(piece, computed).payload.len();
@@ -134,8 +140,6 @@ impl Facts {
             let parameter = &axis.parameter;
             (name(axis), parameter.unit(&plan.spec.units))
         };
-        let (total, spread) = costs.seconds();
-        let seconds = [(total - spread).max(0.0), total, total + spread];
         let fields = plan.spec.fields.iter().map(|field| field.name());
         Self {
             kind: "sweep",
@@ -156,9 +160,11 @@ impl Facts {
             bytes: plan.cells() * plan.bytes_per_cell(),
             bytes_on_disk: bytes_on_disk(&costs, plan),
             memory: Memory::of(plan).on(threads),
+            memory_allowed,
             threads,
-            seconds: seconds.map(|seconds| seconds / threads as f64),
-            tiles_timed: costs.tiles.values.len(),
+            seconds: costs.seconds().map(|seconds| seconds / threads as f64),
+            tiles_timed: costs.tiles_timed,
+            cells_timed: costs.cells_timed,
         }
     }
 
@@ -194,8 +200,11 @@ impl Facts {
         );
         rows.row("bytes", text)?;
         let (memory, threads) = (bytes(self.memory), counted(self.threads as u64, "thread"));
-        rows.row("memory", format!("up to {memory} on {threads}"))?;
-        let timed = format!("{} of {tiles} tiles timed", self.tiles_timed);
+        let allowed = bytes(self.memory_allowed);
+        let text = format!("up to {memory} on {threads}; {allowed} are allowed");
+        rows.row("memory", text)?;
+        let (timed, cells) = (grouped(self.cells_timed), grouped(self.cells));
+        let timed = format!("{timed} of {cells} cells timed");
         let [least, about, most] = self.seconds.map(seconds);
         let text = match self.seconds[2] < 0.01 {
             true => format!("under 0.01 s on {threads}: {timed}"),

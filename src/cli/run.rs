@@ -13,10 +13,9 @@ use crate::store::{MapFile, StoreError};
 use crate::sweep::described::schema::root;
 use crate::sweep::events::Attended;
 use crate::sweep::{Memory, Plan, RunError, Shard};
-use bytesize::ByteSize;
 
-use super::address_space;
 use super::failure::Failure;
+use super::memory::{self, Allowed, useful};
 use super::output::{self, output_path, provenance, warn_beyond_curve, warn_of_idle_delay};
 use super::say;
 use super::show::{nothing_to_do, show};
@@ -41,9 +40,9 @@ pub(super) struct Args {
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     /// The most memory to take, such as 500MB or 2GiB: fewer threads are used if they would take
-    /// more
-    #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
-    memory: u64,
+    /// more [default: half of what is free, at least 500MB]
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse)]
+    memory: Option<u64>,
     /// Start over, replacing a map that is already there and dropping what an earlier run, or this
     /// shard, computed
     #[arg(long)]
@@ -59,49 +58,6 @@ pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
         .ok()
         .filter(|n| (1..=MOST_THREADS).contains(n))
         .ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
-}
-
-/// The default memory of a run.
-pub(super) const MEMORY: &str = "500MB";
-
-/// Reads the bytes of a `--memory` flag.
-pub(super) fn parse_memory(text: &str) -> Result<u64, String> {
-    text.parse::<ByteSize>()
-        .map(|size| size.as_u64())
-        .map_err(|_| "expected a size such as 500MB or 2GiB".to_owned())
-}
-
-/// The number of threads that have a piece to compute, at most `asked`.
-fn useful(plan: &Plan, asked: usize) -> usize {
-    usize::try_from(plan.pieces().total()).map_or(asked, |pieces| asked.min(pieces))
-}
-
-/// The number of useful threads, at most `asked`, that stays within `memory` bytes.
-pub(super) fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
-    let needs = Memory::of(plan);
-    if let Some(left) = address_space::left().filter(|left| *left < memory) {
-        return needs
-            .threads_within(left, useful(plan, asked))
-            .ok_or_else(|| {
-                let (least, left) = (bytes(needs.on(1)), bytes(left));
-                Failure::bad_input_with_help(
-                    format!(
-                        "one thread takes up to {least} of memory in this sweep, the system allows \
-                     {left}"
-                    ),
-                    "`ulimit -v` shows the limit of a shell, in kB, and sets it",
-                )
-            });
-    }
-    needs.threads_within(memory, useful(plan, asked)).ok_or_else(|| {
-        let (least, given) = (bytes(needs.on(1)), bytes(memory));
-        Failure::bad_input_with_help(
-            format!(
-                "one thread takes up to {least} of memory in this sweep, --memory allows {given}"
-            ),
-            "--memory with a larger size, such as 2GB, allows it",
-        )
-    })
 }
 
 /// Reads the seconds of a `--save-every` flag.
@@ -137,15 +93,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         None => {}
     }
     let asked = args.threads.unwrap_or_else(default_threads);
-    let threads = threads_within(&plan, args.memory, asked)?;
+    let allowed = Allowed::of(args.memory, 1);
+    let threads = allowed.threads(&plan, asked)?;
     if threads < useful(&plan, asked) {
-        let one = bytes(Memory::of(&plan).per_thread);
-        let memory = match address_space::left().filter(|left| *left < args.memory) {
-            Some(left) => format!("the system allows {}", bytes(left)),
-            None => format!("--memory allows {}", bytes(args.memory)),
-        };
+        let (one, told) = (bytes(Memory::of(&plan).per_thread), allowed.told());
         say::note(format_args!(
-            "{threads} of {asked} threads: each may take {one}, and {memory}"
+            "{threads} of {asked} threads: each may take {one}, and {told}"
         ));
     }
     let progress = Progress::new(say::is_quiet());

@@ -12,8 +12,10 @@ use crate::program::{self, Folder, LONGEST, ends_within, expect};
 
 /// The longest that a command takes, the map of 10⁹ cells included.
 const PATIENCE: Duration = Duration::from_secs(3600);
-/// What a run takes where nothing else is asked for, in 10⁶ bytes.
+/// What a run is allowed here, and what any other command takes at most, in 10⁶ bytes.
 const PROMISED: u64 = 500;
+/// The flag that allows a run as much.
+const ALLOWED: &str = "--memory=500MB";
 
 /// Curves in so many planes, some with too many to trace; few cells.
 fn slopes(planes: u32) -> String {
@@ -104,7 +106,7 @@ fn long_delays_are_undecided_rather_than_remembered_at_any_length() {
     write(&folder, "long.toml", LONG_DELAYS);
     holds(
         &folder,
-        &["run", "long.toml", "-q", "--threads", "2"],
+        &["run", "long.toml", "-q", "--threads", "2", ALLOWED],
         PROMISED,
     );
     holds(
@@ -156,6 +158,62 @@ fn memory_bounds_the_threads() {
     }
 }
 
+/// What is allowed by default, from `plan` with its environment and limits.
+fn allowed_by_default(folder: &Folder, limit: &str, slurm: &[(&str, &str)]) -> serde_json::Value {
+    let script = format!("{limit} exec \"$0\" plan many.toml --threads 25 --json");
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &script, env!("CARGO_BIN_EXE_slipmap")])
+        .current_dir(folder.path())
+        .envs(slurm.iter().copied());
+    let output = program::output(&mut command);
+    expect(&output, 0, "memory_allowed");
+    program::json(&output)
+}
+
+/// By default a run takes half of the least that is left, and 500 MB where that is less.
+#[test]
+fn the_default_is_a_share_of_what_is_left() {
+    let folder = Folder::new();
+    write(&folder, "many.toml", &slopes(24));
+    let allowed = |limit: &str, slurm: &[(&str, &str)]| -> u64 {
+        let facts = allowed_by_default(&folder, limit, slurm);
+        let (memory, allowed) = (&facts["memory"], facts["memory_allowed"].as_u64().unwrap());
+        assert!(memory.as_u64().unwrap() <= allowed, "{facts}");
+        assert_eq!(facts["inputs"]["memory"], facts["memory_allowed"]);
+        allowed / 1_000_000
+    };
+    let machine = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let available = machine
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"));
+    let of_machine = allowed("", &[]);
+    if let Some(available) = available {
+        let kib: u64 = available.trim_end_matches("kB").trim().parse().unwrap();
+        let half = kib * 1024 / 2_000_000;
+        let most = (half * 11 / 10).max(PROMISED);
+        assert!((PROMISED..=most).contains(&of_machine), "{of_machine} MB");
+    }
+    let small = [("SLURM_MEM_PER_NODE", "1400")];
+    assert_eq!(allowed("", &small), of_machine.min(734));
+    let none = [("SLURM_MEM_PER_CPU", "10"), ("SLURM_CPUS_ON_NODE", "2")];
+    assert_eq!(allowed("", &none), PROMISED);
+    // Of the address space that is left the half is taken, and never more than there is.
+    let half = allowed("ulimit -v 1500000;", &[]);
+    assert!((PROMISED..=768).contains(&half), "{half} MB");
+    let all = allowed("ulimit -v 400000;", &[]);
+    assert!((200..=410).contains(&all), "{all} MB");
+    // A run keeps to what `plan` says.
+    let facts = allowed_by_default(&folder, "", &small);
+    let told = facts["memory"].as_u64().unwrap() / 1_000_000;
+    let threads = facts["threads"].to_string();
+    holds(
+        &folder,
+        &["run", "many.toml", "-q", "--threads", &threads],
+        told,
+    );
+}
+
 /// The shipped sweeps and two larger ones; some of them unless all are asked for.
 fn sweeps(folder: &Folder) -> Vec<String> {
     let all = std::env::var_os("SLIPMAP_MEMORY").is_some();
@@ -202,7 +260,8 @@ fn every_command_keeps_the_promise() {
         }
         holds(&folder, &["plan", &sweep], PROMISED);
         for shard in ["1/2", "2/2"] {
-            holds(&folder, &["run", &sweep, "-q", "--shard", shard], PROMISED);
+            let run = ["run", &sweep, "-q", ALLOWED, "--shard", shard];
+            holds(&folder, &run, PROMISED);
         }
         holds(&folder, &["status", &map], PROMISED);
         holds(&folder, &["merge", &map], PROMISED);

@@ -20,7 +20,7 @@ use self::pieces::{Piece, Pieces};
 use self::planes_of_curves::NoBoundaries;
 use self::tile::{Tile, TileGrid};
 pub use self::tile_size::BLOCK_OF_DELAYS;
-use self::tile_size::{block, cells_per_tile, shared_along, tile_shape};
+use self::tile_size::{block, cells_per_tile, shared_along, tile_shape, timed_part};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
 use crate::setting::axis::Axis;
@@ -150,6 +150,14 @@ impl Plan {
         let (shape, cells) = (self.shape(), cells_per_tile(&self.spec));
         let before = tile_shape(shape, self.tau_axis, block(&self.spec), cells);
         (before == tile).then(|| Cow::Owned(TileGrid::new(shape.to_vec(), before)))
+    }
+
+    /// The parts in which a sample of the cells is timed, each by the code of a whole tile.
+    #[must_use]
+    pub(crate) fn timed_parts(&self) -> TileGrid {
+        let whole = [self.tau_axis, self.shared_axis];
+        let part = timed_part(self.spec.cost(), self.tiles.tile_shape(), whole);
+        TileGrid::new(self.shape().to_vec(), part)
     }
 
     /// Length of each axis, in the order of the map's dimensions.

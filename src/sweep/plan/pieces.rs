@@ -193,9 +193,7 @@ impl Todo {
             let place = match self.order {
                 Order::Forward => turn,
                 Order::Backward => total - 1 - turn,
-                Order::Spread => {
-                    (u128::from(turn) * u128::from(stride(total)) % u128::from(total)) as u64
-                }
+                Order::Spread => spread_over(total, turn),
             };
             if self.wanted(place) {
                 return Some(self.pieces.at(place));
@@ -209,6 +207,13 @@ impl Todo {
 #[must_use]
 pub fn spread(sample: u64) -> f64 {
     (sample as f64 * GOLDEN).fract()
+}
+
+/// The place, of `total`, that is visited at a turn, so that places are spread from the beginning
+/// and each is visited once.
+#[must_use]
+pub(crate) fn spread_over(total: u64, turn: u64) -> u64 {
+    (u128::from(turn) * u128::from(stride(total)) % u128::from(total)) as u64
 }
 
 const GOLDEN: f64 = 0.618_033_988_749_895;

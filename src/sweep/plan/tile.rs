@@ -83,6 +83,18 @@ impl TileGrid {
         Tile { offset, extent }
     }
 
+    /// The number of the tile that holds a cell.
+    #[must_use]
+    pub(crate) fn holding(&self, index: &[usize]) -> u64 {
+        let along: Vec<usize> = self.tiles_along().collect();
+        let of_tile = index.iter().zip(&self.tile_shape).map(|(i, t)| i / t);
+        let strides = strides_of(&along).into_iter();
+        of_tile
+            .zip(strides)
+            .map(|(i, stride)| i as u64 * stride)
+            .sum()
+    }
+
     /// Distance between neighbouring cells along each axis in a tile's memory, which has the full
     /// tile shape, last axis fastest.
     #[must_use]
@@ -161,6 +173,7 @@ mod tests {
         let mut seen = vec![0; 5 * 7 * 4];
         for number in 0..grid.len() {
             let tile = grid.tile(number);
+            assert_eq!(grid.holding(&tile.offset), number as u64);
             for_each_index(&tile.extent, None, |i| {
                 let cell = ((tile.offset[0] + i[0]) * 7 + tile.offset[1] + i[1]) * 4
                     + tile.offset[2]

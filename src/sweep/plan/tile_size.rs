@@ -90,6 +90,24 @@ pub(super) fn shared_along(
     tile
 }
 
+/// The shape of the parts of tiles of shape `tile` in which a sample of cells is timed: tiles, or,
+/// where cells take long, lines of delays, or single cells with those that share their work.
+pub(super) fn timed_part(
+    cost: Cost,
+    tile: &[usize],
+    [tau, shared]: [Option<usize>; 2],
+) -> Vec<usize> {
+    let is_whole = |axis: usize| match cost {
+        Cost::Counted | Cost::Rooted => true,
+        Cost::Searched => [tau, shared].contains(&Some(axis)),
+        _ => shared == Some(axis),
+    };
+    let along = tile.iter().enumerate();
+    along
+        .map(|(axis, &n)| if is_whole(axis) { n } else { 1 })
+        .collect()
+}
+
 /// The size of roughly equal parts of `length`, each at most `most` (or 1).
 fn part(length: usize, most: usize) -> usize {
     length.div_ceil(length.div_ceil(most.max(1)))
@@ -128,6 +146,15 @@ mod tests {
         assert_eq!(shape(&[1001, 20_000], Some(1)), [1, 12_288]);
         assert_eq!(tile_shape(&[300, 1000], Some(1), 1, 256), [1, 250]);
         assert_eq!(tile_shape(&[300, 100], Some(1), 1, 256), [2, 100]);
+    }
+
+    #[test]
+    fn slow_cells_are_timed_without_their_neighbours() {
+        let part = |cost| timed_part(cost, &[2, 30, 8], [Some(1), Some(2)]);
+        assert_eq!(part(Cost::Rooted), [2, 30, 8]);
+        assert_eq!(part(Cost::Searched), [1, 30, 8]);
+        assert_eq!(part(Cost::Critical), [1, 1, 8]);
+        assert_eq!(timed_part(Cost::Followed, &[3, 5], [None, None]), [1, 1]);
     }
 
     /// An axis that is shared is whole in a tile, whatever its place, unless the tile gets too
