@@ -4,9 +4,9 @@
 #   scripts/soak.sh [HOURS]
 #
 # The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/timed/faults.rs), every
-# loss of power (tests/files/crash.rs), the memory of each command (tests/guards/memory.rs) and of the Python module, and what
-# other programs of the kind take; then in turn, with new seeds,
-# until the time is over (1 hour by default): property tests of the model, kills of runs, damaged tiles and maps, flipped bits,
+# loss of power (tests/files/crash.rs), kills of a queue (tests/timed/queue.rs), requests to the server by schemathesis, the memory
+# of each command (tests/guards/memory.rs) and of the Python module, and what other programs of the kind take; then in turn, with
+# new seeds, until the time is over (1 hour by default): property tests of the model, kills of runs, damaged tiles and maps, flipped bits,
 # losses of power, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
@@ -33,12 +33,19 @@ say "every fault"
 SLIPMAP_FAULTS=all tests --test timed faults::
 say "every loss of power"
 SLIPMAP_FAULTS=all tests --test files crash::
+say "a thousand kills of a queue"
+SLIPMAP_QUEUE_KILLS=1000 tests --test timed queue::
 say "memory of every command"
 SLIPMAP_MEMORY=all tests --test guards memory:: -- --nocapture
 # scripts/test.sh has put the module there.
 if [ -x target/readers-venv/bin/pytest ]; then
     say "memory of the Python module"
     SLIPMAP_CALLS=100000 target/readers-venv/bin/pytest python/tests/test_memory.py
+    say "requests by chance to every address of the server"
+    requests=target/schemathesis-venv
+    [ -x "$requests/bin/python" ] || python3 -m venv "$requests"
+    "$requests/bin/pip" install --quiet --disable-pip-version-check schemathesis==4.32.5
+    SLIPMAP_SCHEMATHESIS=$PWD/$requests/bin/schemathesis tests/schemathesis/run.sh 1000
     say "roots by the module and by other people's programs"
     others=target/peers-venv
     [ -x "$others/bin/python" ] || python3 -m venv "$others"

@@ -27,9 +27,10 @@
 //! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //!
-//! Beside them stands what belongs to the program alone: the claims of the letter and the command
-//! line. `cli`, the default, includes all features. With `default-features = false` the first five
-//! modules remain, without libhdf5 and without a C compiler.
+//! Beside them stands what belongs to the program alone: the claims of the letter, the queue of
+//! sweeps and the command line. `cli`, the default, includes all features. With
+//! `default-features = false` the first five modules remain, without libhdf5 and without a C
+//! compiler.
 //!
 //! # Example
 //!
@@ -91,6 +92,8 @@ pub mod linear;
 pub mod maps;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;
+#[cfg(feature = "serve")]
+pub(crate) mod queue;
 #[cfg(feature = "store")]
 pub mod report;
 #[cfg(test)]

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Computes a map on Slurm: a job array of N shards, and a job that merges them when all are complete.
+# Computes a map on Slurm: a job array of N shards, of which the last one makes the map.
 #
 #     scripts/slurm/submit.sh SWEEP.toml MAP.h5 N [options of sbatch]
 #     scripts/slurm/submit.sh decay_load.toml /scratch/decay_load.h5 64 --cpus-per-task=8 --time=4:00:00
 #
-# Prints the numbers of both jobs. N may be N%M: at most M shards at once. MAP.h5 has to be on a file system that all nodes share.
+# Prints the number of the array. N may be N%M: at most M shards at once. MAP.h5 has to be on a file system that all nodes share.
 # slipmap is looked for on the PATH, or is what the variable SLIPMAP names. The same command again goes on with what is missing.
 set -euo pipefail
 
@@ -20,7 +20,7 @@ shift 3
 [ -f "$sweep" ] || die "$sweep: there is no such file"
 for option in "$@"; do
     case $option in
-    -a* | --array* | -d* | --dependency*) die "$option: the array and the dependency of the jobs are set here" ;;
+    -a* | --array*) die "$option: the array is set here" ;;
     esac
 done
 command -v "${SLIPMAP:-slipmap}" >/dev/null || die "slipmap is not on the PATH; the variable SLIPMAP can name it"
@@ -29,10 +29,4 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 shards=$(sbatch --parsable "$@" --array="1-$array" "$here/shard.sbatch" "$sweep" "$map" "${array%%%*}")
 # With the name of a cluster behind it where there are several.
-shards=${shards%%;*}
-if ! merge=$(sbatch --parsable "$@" --cpus-per-task=1 --dependency="afterok:$shards" --kill-on-invalid-dep=yes \
-    "$here/merge.sbatch" "$map"); then
-    scancel "$shards"
-    die "the merge was not accepted; the shards are cancelled"
-fi
-printf 'shards %s\nmerge %s\n' "$shards" "${merge%%;*}"
+printf '%s\n' "${shards%%;*}"

@@ -1,8 +1,10 @@
 //! How a command fails: the message for the user, and the exit code.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use crate::model::ModelError;
+use crate::queue::QueueError;
 use crate::setting::no_answer::NoAnswer;
 use crate::store::StoreError;
 use crate::text::Shown;
@@ -150,6 +152,32 @@ impl From<StoreError> for Failure {
             | StoreError::NotATrace { .. }
             | StoreError::Io { action: "open", .. } => Self::BadInput(report),
             _ => Self::Failed(report),
+        }
+    }
+}
+
+impl From<QueueError> for Failure {
+    fn from(error: QueueError) -> Self {
+        let message = error.to_string();
+        match error {
+            QueueError::Store(error) => error.into(),
+            QueueError::NoSuchJob { near, .. } => match near {
+                Some(near) => Self::bad_input_with_help(message, format!("did you mean {near}?")),
+                None => Self::bad_input_with_help(message, "`slipmap jobs FOLDER` lists them"),
+            },
+            QueueError::NotNow { .. } => Self::bad_input(message),
+            QueueError::NoNumber { .. } => Self::bad_input_with_help(
+                message,
+                "rename files of the queue, or begin another folder",
+            ),
+            QueueError::Busy { .. } => Self::failed(message),
+            QueueError::NoProgram { path, .. } => {
+                let help = match path == Path::new("sbatch") {
+                    true => "this is no machine from which Slurm takes jobs",
+                    false => "where it was replaced, start the worker again",
+                };
+                Self::failed_with_help(message, help)
+            }
         }
     }
 }

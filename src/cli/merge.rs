@@ -1,15 +1,17 @@
 //! `slipmap merge`: assembles the map of shards that were computed separately.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::maps::assembly::{Assembled, Missing};
 use crate::maps::maker::{self, Merge};
-use crate::report::log::{Both, Log};
-use crate::report::numbers::{bytes, grouped};
+use crate::report::log::Log;
+use crate::report::numbers::{bytes, counted, grouped};
 use crate::report::picture::Named;
-use crate::report::progress::Progress;
+use crate::report::progress::{Both, Progress};
 use crate::store::StoreError;
-use crate::store::tiles::shards;
+use crate::store::tiles::done::ShardDone;
+use crate::store::tiles::{GrowingMap, Survey, shards};
 use crate::sweep::events::Attended;
 use crate::sweep::{Plan, Shard};
 
@@ -39,6 +41,9 @@ pub(super) struct Args {
     fresh: bool,
 }
 
+/// How long another process is waited for that merges the same shards.
+const FOR_OTHERS: Duration = Duration::from_millis(200);
+
 /// Shards are merged without their sweep file.
 const NAMED: Named = Named::InMap;
 
@@ -62,34 +67,98 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         drop(shards::remove_root(target));
         return nothing_to_do(target, &remark, NAMED, &signals);
     }
-    let provenance = provenance("merge", &args.map);
-    let (progress, log) = (
-        Progress::new(say::is_quiet()),
-        Log::beside(target, Shard::WHOLE),
-    );
-    let observer = Both(&progress, &log);
-    let missing = match args.partial {
-        true => Missing::Leave,
-        false => Missing::Refuse,
-    };
     // Folders from elsewhere belong to the user.
     let keep = args.partial || !args.folders.is_empty();
     let asked = Merge {
         folders: &folders,
         map: target,
-        missing,
+        missing: match args.partial {
+            true => Missing::Leave,
+            false => Missing::Refuse,
+        },
         replace_complete: args.fresh,
         remove_beside: (!keep).then_some(&*args.map),
     };
+    let assembled = assembled(&plan, &asked, &args.map, &signals);
+    let assembled = assembled.map_err(|error| failure(error, &args.map, &signals))?;
+    tell(target, &plan, &assembled)?;
+    show(target, NAMED, &signals);
+    Ok(())
+}
+
+/// Assembles a map from its shards; progress is shown and logged.
+fn assembled(
+    plan: &Plan,
+    asked: &Merge,
+    named: &Path,
+    signals: &Signals,
+) -> Result<Assembled, StoreError> {
+    let (progress, log) = (
+        Progress::new(say::is_quiet()),
+        Log::beside(asked.map, Shard::WHOLE),
+    );
+    let observer = Both(&progress, &log);
     let attended = Attended {
         observer: &observer,
         stop: &signals.stop,
     };
-    let merged = maker::merge(&plan, &asked, &provenance, attended);
-    let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
-    tell(target, &plan, &assembled)?;
-    show(target, NAMED, &signals);
-    Ok(())
+    maker::merge(plan, asked, &provenance("merge", named), attended)
+}
+
+/// After a shard: merges all `of` shards of a map if none is missing. Of several processes that
+/// find so at a time, one merges and the others wait for it.
+pub(super) fn after_shard(
+    plan: &Plan,
+    map: &Path,
+    of: u64,
+    signals: &Signals,
+) -> Result<(), Failure> {
+    open_files::as_many_as_allowed();
+    loop {
+        if maker::is_complete(map, Some(&plan.hash()))? {
+            return nothing_to_do(map, "", plan.spec.picture.into(), signals);
+        }
+        let present = shards::present(map)?;
+        let missing = missing_of(map, of)?;
+        if missing > 0 && !present.is_empty() {
+            let missing = counted(missing, "shard");
+            let map = map.display();
+            return say::result(format_args!("{map}: {missing} of {of} not complete yet"));
+        }
+        let folders: Vec<PathBuf> = present.into_iter().map(|(_, path)| path).collect();
+        let asked = Merge {
+            folders: &folders,
+            map,
+            missing: Missing::Refuse,
+            replace_complete: false,
+            remove_beside: Some(map),
+        };
+        match assembled(plan, &asked, map, signals) {
+            Ok(assembled) => {
+                tell(map, plan, &assembled)?;
+                show(map, plan.spec.picture.into(), signals);
+                return Ok(());
+            }
+            // Another process merges them, or is still looking whether it should.
+            Err(StoreError::Locked { .. }) => std::thread::sleep(FOR_OTHERS),
+            Err(error) => return Err(failure(error, map, signals)),
+        }
+        if signals.stop.load(std::sync::atomic::Ordering::Relaxed) {
+            return Err(failure(StoreError::Stopped, map, signals));
+        }
+    }
+}
+
+/// How many of the `of` shards of a map are not complete.
+fn missing_of(map: &Path, of: u64) -> Result<u64, Failure> {
+    let Some(tiles) = GrowingMap::of(map)? else {
+        return Ok(of);
+    };
+    let shards = tiles.shards();
+    let complete = shards
+        .iter()
+        .filter(|s| s.shard.numbers().1 == of && s.pieces_done == s.pieces);
+    Ok(of.saturating_sub(complete.count() as u64))
 }
 
 fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
@@ -157,11 +226,12 @@ fn failure(error: StoreError, map: &Path, signals: &Signals) -> Failure {
         _ => return error.into(),
     }
     let mut unfinished = Vec::new();
-    if let Ok(Some(survey)) = crate::store::tiles::Survey::of(map) {
-        let short = survey.shards.iter().filter(|s| s.pieces_done < s.pieces);
+    if let Ok(Some(survey)) = Survey::of(map) {
+        let shards: Vec<&ShardDone> = survey.shards.iter().map(|s| &s.done).collect();
+        let short = shards.iter().filter(|s| s.pieces_done < s.pieces);
         unfinished.extend(short.map(|s| s.shard.to_string()));
-        for of in survey.shards.iter().map(|s| s.shard.numbers().1).take(1) {
-            let there = |n: &u64| survey.shards.iter().any(|s| s.shard.numbers() == (*n, of));
+        for of in shards.iter().map(|s| s.shard.numbers().1).take(1) {
+            let there = |n: &u64| shards.iter().any(|s| s.shard.numbers() == (*n, of));
             let absent = (1..=of).filter(|n| !there(n));
             unfinished.extend(absent.map(|number| format!("{number}/{of}")));
         }

@@ -22,6 +22,7 @@
 //! - `info`: `slipmap info`
 //! - `info_trace`: `slipmap info` for a trace
 //! - `inputs_line`: the line of inputs with which answers about a block begin
+//! - `jobs`: `slipmap jobs`
 //! - `json`: the output of commands with `--json`
 //! - `kind`: the kind of a file of slipmap, for commands that take another kind
 //! - `law_args`: the flags of a friction law besides its parameters
@@ -56,12 +57,15 @@
 //! - `simulate`: `slipmap simulate`
 //! - `start_args`: the flags for the start and the end of a motion
 //! - `status`: `slipmap status`
+//! - `status_list`: `slipmap status` of several maps and of folders
 //! - `sweep_file`: reads sweep files, case files and tables of friction, with errors that point
 //!   into them
+//! - `submit`: `slipmap submit`
 //! - `system_args`: a system from a file, or a shipped one, instead of the letter's
 //! - `text_output`: text on standard output, or in a file that is written completely or not at all
 //! - `vc`: `slipmap vc`
 //! - `verify`: `slipmap verify`
+//! - `work`: `slipmap work`
 
 mod address_space;
 mod asked;
@@ -85,6 +89,7 @@ mod formula_args;
 mod info;
 mod info_trace;
 mod inputs_line;
+mod jobs;
 mod json;
 mod kind;
 mod law_args;
@@ -119,11 +124,14 @@ mod signals;
 mod simulate;
 mod start_args;
 mod status;
+mod status_list;
+mod submit;
 mod sweep_file;
 mod system_args;
 mod text_output;
 mod vc;
 mod verify;
+mod work;
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -191,7 +199,13 @@ commands! {
     Run(run),
     /// Put the shards of a map together
     Merge(merge),
-    /// Say how far a map is, from another terminal
+    /// Put sweeps into the queue of a folder
+    Submit(submit),
+    /// Compute the sweeps that wait in a folder, one after the other
+    Work(work),
+    /// Say what waits, runs, is held, failed and is done in a folder; hold, release, drop sweeps
+    Jobs(jobs, described),
+    /// Say how far a map is, or all maps of a folder, from another terminal
     Status(status, described),
     /// Check a map: its checksums, its schema, and a sample of its cells by other methods; or
     /// compute the motion of a trace again

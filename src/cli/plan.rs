@@ -4,14 +4,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use crate::maps::cost::MapCost;
 use crate::model::stop::Stop;
 use crate::report::numbers::{bytes, counted, grouped, seconds, unit_behind};
 use crate::setting::axis::Axis;
-use crate::store::tiles::RecordEncoder;
 use crate::sweep::described::schema::STATUS;
-use crate::sweep::engine::{Computed, Encode};
-use crate::sweep::estimate::Costs;
-use crate::sweep::{Memory, Piece, Plan};
+use crate::sweep::{Memory, Plan};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -24,13 +22,6 @@ use super::plan_case;
 use super::run::{default_threads, parse_threads};
 use super::say::Rows;
 use super::sweep_file::{Described, read_sweep_or_case};
-
-/// Measured bytes of a map besides its numbers: of the file, of each dataset of cells or axis, of
-/// each chunk in an index, and of the group of curves.
-const WITHOUT_CELLS: f64 = 8e3;
-const OF_A_DATASET: f64 = 1.2e3;
-const OF_A_CHUNK: f64 = 40.0;
-const WITHOUT_CURVES: f64 = 25e3;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -130,10 +121,7 @@ struct Facts {
 
 impl Facts {
     fn of(plan: &Plan, threads: usize, memory_allowed: u64) -> Self {
-        let mut encoder = RecordEncoder::default();
-        let stored =
-            |piece: Piece, computed: Computed<'_>| encoder.encode(piece, computed).payload.len();
-        let costs = Costs::of(plan, stored, &Stop::default());
+        let cost = MapCost::of(plan, &Stop::default());
         let axis = |axis: &Axis| AxisFacts::of(&axis.parameter, &axis.values);
         let name = |axis: &Axis| axis.parameter.name().to_owned();
         let unit = |axis: &Axis| {
@@ -158,13 +146,13 @@ impl Facts {
             no_boundaries: plan.no_boundaries().map(|why| why.to_string()),
             best_planes: plan.best_plane().map(|_| plan.best_planes()),
             bytes: plan.cells() * plan.bytes_per_cell(),
-            bytes_on_disk: bytes_on_disk(&costs, plan),
+            bytes_on_disk: cost.bytes_on_disk,
             memory: Memory::of(plan).on(threads),
             memory_allowed,
             threads,
-            seconds: costs.seconds().map(|seconds| seconds / threads as f64),
-            tiles_timed: costs.tiles_timed,
-            cells_timed: costs.cells_timed,
+            seconds: cost.seconds_on(threads),
+            tiles_timed: cost.tiles_timed,
+            cells_timed: cost.cells_timed,
         }
     }
 
@@ -212,16 +200,4 @@ impl Facts {
         };
         rows.row("time", text)
     }
-}
-
-/// Approximate bytes of the map: its cells, its curves, and their description.
-fn bytes_on_disk(of: &Costs, plan: &Plan) -> u64 {
-    let datasets = (plan.spec.fields.len() + plan.spec.axes.len() + 1) as f64;
-    let chunks = plan.tiles.len() as f64 * (plan.spec.fields.len() + 1) as f64;
-    let described = WITHOUT_CELLS + datasets * OF_A_DATASET + chunks * OF_A_CHUNK;
-    let curves = match plan.boundary_planes() {
-        0 => 0.0,
-        _ => WITHOUT_CURVES + of.bytes_of_curves.total(),
-    };
-    (described + curves + of.bytes.total()) as u64
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::maps::maker::{self, Job};
-use crate::report::log::{Both, Log};
+use crate::queue::note::take_back_try;
+use crate::report::log::Log;
 use crate::report::numbers::{bytes, grouped, prefixed, seconds};
-use crate::report::progress::Progress;
+use crate::report::progress::{Both, Progress};
 use crate::store::tiles::{Manifest, shards};
 use crate::store::{MapFile, StoreError};
 use crate::sweep::described::schema::root;
@@ -16,6 +17,7 @@ use crate::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::memory::{self, Allowed, useful};
+use super::merge;
 use super::output::{self, output_path, provenance, warn_beyond_curve, warn_of_idle_delay};
 use super::say;
 use super::show::{nothing_to_do, show};
@@ -39,6 +41,9 @@ pub(super) struct Args {
     /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// After this shard, merge all of them if none is missing
+    #[arg(long, requires = "shard")]
+    and_merge: bool,
     /// The most memory to take, such as 500MB or 2GiB: fewer threads are used if they would take
     /// more [default: half of what is free, at least 500MB]
     #[arg(long, value_name = "SIZE", value_parser = memory::parse)]
@@ -50,6 +55,9 @@ pub(super) struct Args {
     /// Seconds between two saves of computed pieces
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = parse_seconds)]
     save_every: Duration,
+    /// The lock of a job: the run is one of a worker, and ends with it
+    #[arg(long, value_name = "LOCK", hide = true)]
+    job_lock: Option<PathBuf>,
 }
 
 /// Reads the number of a `--threads` flag.
@@ -61,7 +69,7 @@ pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
 }
 
 /// Reads the seconds of a `--save-every` flag.
-fn parse_seconds(text: &str) -> Result<Duration, String> {
+pub(super) fn parse_seconds(text: &str) -> Result<Duration, String> {
     let seconds = text
         .parse::<f64>()
         .ok()
@@ -78,6 +86,18 @@ pub(super) fn default_threads() -> usize {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    let Some(lock) = &args.job_lock else {
+        return compute(args, &signals);
+    };
+    signals.stop_at_end_of_input()?;
+    let ended = compute(args, &signals);
+    if let Err(Failure::Interrupted { .. }) = &ended {
+        take_back_try(lock);
+    }
+    ended
+}
+
+fn compute(args: &Args, signals: &Signals) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     warn_of_idle_delay(plan.spec.has_idle_delay());
@@ -85,7 +105,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        return nothing_to_do(&path, &remark, plan.spec.picture.into(), &signals);
+        return nothing_to_do(&path, &remark, plan.spec.picture.into(), signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -112,10 +132,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = Arc::new(plan);
     let watched = Watched {
         observers: &observers,
-        signals: &signals,
+        signals,
     };
     match args.shard.filter(|shard| !shard.is_whole()) {
-        Some(shard) => run_shard(&plan, &job, shard, &watched, args.fresh),
+        Some(shard) => run_shard(&plan, &job, shard, &watched, args),
         None => run_whole(&plan, &job, &watched, args),
     }
 }
@@ -140,12 +160,15 @@ fn run_shard(
     job: &Job,
     shard: Shard,
     watched: &Watched,
-    fresh: bool,
+    args: &Args,
 ) -> Result<(), Failure> {
     refuse_other_way(job.map, shard)?;
     let made = maker::make_shard(plan, job, shard, watched.attended());
-    made.map_err(|error| failure(error, job.map, fresh, watched))?;
+    made.map_err(|error| failure(error, job.map, args.fresh, watched))?;
     let (number, of) = shard.numbers();
+    if args.and_merge {
+        return merge::after_shard(plan, job.map, of, watched.signals);
+    }
     let map = job.map.display();
     say::result(format_args!(
         "shard {number} of {of} is complete; when all are, `slipmap merge {map}` makes the map"

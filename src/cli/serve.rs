@@ -7,9 +7,11 @@ use std::process::{Command, Stdio};
 
 use tempfile::TempPath;
 
+use crate::queue::room::KEEP_FREE;
 use crate::serve::{Place, ReaderCommand, Server, Serving};
 
 use super::failure::Failure;
+use super::memory;
 use super::read_map;
 use super::run::default_threads;
 use super::say;
@@ -26,6 +28,7 @@ const OPENER: &str = if cfg!(target_os = "macos") {
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples: slipmap serve maps --open\n          \
+    slipmap serve maps --submit, and slipmap work maps elsewhere\n          \
     slipmap serve --socket ~/slipmap.sock, and ssh -L 8417:/home/me/slipmap.sock HOST elsewhere")]
 pub(super) struct Args {
     /// Folder whose maps are shown, and those of the folders in it
@@ -49,6 +52,14 @@ pub(super) struct Args {
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Take sweeps and put them into the queue of the folder, for `slipmap work`. A second link is
+    /// for who may only look
+    #[arg(long)]
+    submit: bool,
+    /// Bytes of the disk that stay free; a sweep that may need them is refused
+    #[arg(long, value_name = "SIZE", requires = "submit", default_value = KEEP_FREE,
+          value_parser = memory::parse)]
+    keep_free: u64,
 }
 
 impl Args {
@@ -95,9 +106,19 @@ impl Args {
                 "warning: everyone who can reach {address} and has this link may use the server \
                 and see its maps, and what is sent is not encrypted; Ctrl-C ends it"
             )),
+            Place::Address { .. } if self.submit => {
+                say::note("whoever has these links may use the server; Ctrl-C ends it");
+            }
             Place::Address { .. } => {
                 say::note("whoever has this link may use the server; Ctrl-C ends it");
             }
+        }
+        if self.submit {
+            say::note(format_args!(
+                "with the first link sweeps can be handed in, the second one only shows; \
+                `slipmap work {}` computes them",
+                self.folder.display()
+            ));
         }
     }
 }
@@ -151,9 +172,15 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             program: std::env::current_exe()?,
             arguments: vec![read_map::NAME.into()],
         },
+        submit: args.submit.then_some(args.keep_free),
     };
     let server = Server::listen(&serving).map_err(|error| args.refused(&error))?;
-    writeln!(std::io::stdout().lock(), "{}", server.link())?;
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", server.link())?;
+    if args.submit {
+        writeln!(out, "{}", server.link_to_look())?;
+    }
+    drop(out);
     args.tell();
     let leading = args.open.then(|| leading_to(&server.link()));
     match &leading {

@@ -49,6 +49,25 @@ impl Signals {
         Ok(Self { stop, code })
     }
 
+    /// From now on the end of standard input stops this process as SIGTERM does. The signal that a
+    /// system sends at the death of a parent would be a second one, which ends a run at once.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(super) fn stop_at_end_of_input(&self) -> Result<(), Failure> {
+        let (stop, code) = (Arc::clone(&self.stop), Arc::clone(&self.code));
+        let watch = move || {
+            let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+            code.store(143, Ordering::Relaxed);
+            stop.store(true, Ordering::Relaxed);
+        };
+        let refused = |error| Failure::failed(format!("cannot start a thread: {error}"));
+        thread::Builder::new()
+            .spawn(watch)
+            .map(drop)
+            .map_err(refused)
+    }
+
     /// The end of a command that was stopped by a signal.
     pub(super) fn interrupted(&self, message: impl Display) -> Failure {
         Failure::Interrupted {

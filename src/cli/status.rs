@@ -1,50 +1,56 @@
-//! `slipmap status`: the progress of a map, from another terminal.
+//! `slipmap status`: the progress of maps, from another terminal.
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use crate::linear::status::FLAGS;
-use crate::report::log::{self, Entry, LogLine};
+use crate::queue::progress::{Progress, ShardProgress};
 use crate::report::numbers::{grouped, prefixed, seconds};
 use crate::store::tiles::Survey;
-use crate::store::tiles::survey::ShardSurvey;
-use crate::store::{MapFile, StatusCounts, regular};
+use crate::store::{MapFile, StatusCounts};
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::say::Rows;
-
-/// The most bytes of a log that are read for the rate of a run.
-const MOST_OF_LOG: u64 = 64 << 20;
+use super::status_list::{self, ListAnswer};
 
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Examples: slipmap status maps/\n          \
+    slipmap status a.h5 b.h5")]
 pub(super) struct Args {
-    /// The map, there or still to come
-    #[arg(value_name = "MAP.h5")]
-    map: PathBuf,
+    /// The map, there or still to come. Of several, and of the maps in folders, a line each
+    #[arg(value_name = "MAP.h5|FOLDER", required = true)]
+    paths: Vec<PathBuf>,
     /// Print one JSON object instead
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let status = match Survey::of(&args.map)? {
-        Some(survey) => of_tiles(&args.map, &survey),
-        None => of_map(&args.map)?,
-    };
-    if args.json {
-        return json::print(&Inputs::default().and("map", &args.map), &status.answer());
+    match &*args.paths {
+        [map] if !map.is_dir() => main_of_one(map, args.json),
+        paths => status_list::main(paths, args.json),
     }
-    status.print(&args.map)
+}
+
+fn main_of_one(map: &Path, json: bool) -> Result<(), Failure> {
+    let status = match Survey::of(map)? {
+        Some(survey) => Status::of_tiles(map, &survey),
+        None => Status::of_map(map)?,
+    };
+    if json {
+        return json::print(&Inputs::default().and("map", map), &status.answer());
+    }
+    status.print(map)
 }
 
 /// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
-    AnswerSchema::of("status").or::<StatusAnswer>()
+    AnswerSchema::of("status")
+        .or::<StatusAnswer>()
+        .or::<ListAnswer>()
 }
 
 /// How far a map is.
@@ -88,146 +94,83 @@ struct ShardAnswer {
 }
 
 impl ShardAnswer {
-    fn of(shard: &ShardStatus) -> Self {
+    fn of((shard, damaged_files): (&ShardProgress, u64)) -> Self {
+        let done = &shard.done;
         Self {
-            shard: shard.shard.clone(),
-            running: shard.running,
-            cells: shard.cells,
-            cells_done: shard.cells_done,
-            pieces: shard.pieces,
-            pieces_done: shard.pieces_done,
-            damaged_files: shard.damaged_files,
-            cells_per_second: shard.rate,
+            shard: done.shard.to_string(),
+            running: done.running,
+            cells: done.cells,
+            cells_done: done.cells_done,
+            pieces: done.pieces,
+            pieces_done: done.pieces_done,
+            damaged_files,
+            cells_per_second: shard.cells_per_second,
             seconds_left: shard.seconds_left(),
         }
     }
 }
 
-/// The progress of a map, as JSON and for people.
+/// The status of a map, as JSON and for people.
 struct Status {
-    complete: bool,
-    cells: u64,
-    cells_done: u64,
+    progress: Progress,
     statuses: StatusCounts,
-    shards: Vec<ShardStatus>,
-}
-
-struct ShardStatus {
-    shard: String,
-    running: bool,
-    cells: u64,
-    cells_done: u64,
-    pieces: u64,
-    pieces_done: u64,
-    damaged_files: u64,
-    /// Cells per second of the run that works on it.
-    rate: Option<f64>,
-}
-
-impl ShardStatus {
-    fn seconds_left(&self) -> Option<f64> {
-        let rate = self.rate.filter(|rate| *rate > 0.0)?;
-        Some(self.cells.saturating_sub(self.cells_done) as f64 / rate)
-    }
-}
-
-fn of_map(path: &Path) -> Result<Status, Failure> {
-    let map = MapFile::open(path)?;
-    let missing = map.cells_missing();
-    Ok(Status {
-        complete: missing == 0,
-        cells: map.cells(),
-        cells_done: map.cells() - missing.min(map.cells()),
-        statuses: map.status_counts()?,
-        shards: Vec::new(),
-    })
-}
-
-fn of_tiles(map: &Path, survey: &Survey) -> Status {
-    let shard = |found: &ShardSurvey| ShardStatus {
-        shard: found.shard.to_string(),
-        running: found.running,
-        cells: found.cells,
-        cells_done: found.cells_done,
-        pieces: found.pieces,
-        pieces_done: found.pieces_done,
-        damaged_files: found.damaged.len() as u64,
-        rate: rate(map, found),
-    };
-    Status {
-        complete: MapFile::open(map).is_ok_and(|map| !map.is_partial()),
-        cells: survey.plan.cells(),
-        cells_done: survey.cells_done,
-        statuses: survey.statuses,
-        shards: survey.shards.iter().map(shard).collect(),
-    }
-}
-
-/// Cells per second since the current run of a shard started, from its log and its tiles.
-fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
-    if !found.running {
-        return None;
-    }
-    let path = log::path(map, found.shard);
-    // A file of another kind may be one long line.
-    let log = regular::open(&path).ok()?.take(MOST_OF_LOG);
-    let lines = BufReader::new(log).lines().map_while(Result::ok);
-    let lines = lines.filter_map(|line| serde_json::from_str::<LogLine>(&line).ok());
-    let started = lines.filter_map(|line| match line.entry {
-        Entry::Started { cells_left, .. } => Some((line.time, cells_left)),
-        _ => None,
-    });
-    let (time, left) = started.last()?;
-    let since = humantime::parse_rfc3339(&time).ok()?;
-    // After the clock was set back, there is no rate.
-    let elapsed = SystemTime::now().duration_since(since).ok()?;
-    let computed = found
-        .cells_done
-        .saturating_sub(found.cells.saturating_sub(left));
-    Some(computed as f64 / elapsed.as_secs_f64().max(1e-3))
+    /// Number of damaged files of each shard.
+    damaged: Vec<u64>,
 }
 
 impl Status {
-    fn running(&self) -> bool {
-        self.shards.iter().any(|shard| shard.running)
+    fn of_map(path: &Path) -> Result<Self, Failure> {
+        let map = MapFile::open(path)?;
+        Ok(Self {
+            progress: Progress::of_file(&map),
+            statuses: map.status_counts()?,
+            damaged: Vec::new(),
+        })
     }
 
-    fn rate(&self) -> Option<f64> {
-        let rates: Vec<f64> = self.shards.iter().filter_map(|s| s.rate).collect();
-        (!rates.is_empty()).then(|| rates.iter().sum())
+    fn of_tiles(map: &Path, survey: &Survey) -> Self {
+        let damaged = survey.shards.iter().map(|found| found.damaged.len() as u64);
+        Self {
+            progress: Progress::of_survey(map, survey),
+            statuses: survey.statuses,
+            damaged: damaged.collect(),
+        }
     }
 
-    /// Seconds until the slowest running shard is done.
-    fn seconds_left(&self) -> Option<f64> {
-        let left = self.shards.iter().filter_map(ShardStatus::seconds_left);
-        left.reduce(f64::max)
+    /// The shards, each with its number of damaged files.
+    fn shards(&self) -> impl Iterator<Item = (&ShardProgress, u64)> {
+        let damaged = self.damaged.iter().copied();
+        self.progress.shards.iter().zip(damaged)
     }
 
     fn answer(&self) -> StatusAnswer {
         let flags = FLAGS.iter().zip(self.statuses.flagged);
         let flagged = flags.map(|((_, name), count)| (*name, count));
         let unflagged = [("unflagged", self.statuses.unflagged)];
+        let progress = &self.progress;
         StatusAnswer {
-            complete: self.complete,
-            running: self.running(),
-            cells: self.cells,
-            cells_done: self.cells_done,
-            cells_per_second: self.rate(),
-            seconds_left: self.seconds_left(),
+            complete: progress.complete,
+            running: progress.running(),
+            cells: progress.cells,
+            cells_done: progress.cells_done,
+            cells_per_second: progress.cells_per_second(),
+            seconds_left: progress.seconds_left(),
             cells_by_status: flagged.chain(unflagged).collect(),
-            shards: self.shards.iter().map(ShardAnswer::of).collect(),
+            shards: self.shards().map(ShardAnswer::of).collect(),
         }
     }
 
     fn print(&self, map: &Path) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         rows.row("map", format!("{}: {}", map.display(), self.state()))?;
-        let share = 100.0 * self.cells_done as f64 / self.cells.max(1) as f64;
-        let (done, cells) = (grouped(self.cells_done), grouped(self.cells));
+        let (progress, share) = (&self.progress, self.progress.percent());
+        let (done, cells) = (grouped(progress.cells_done), grouped(progress.cells));
         let done = format!("{done} of {cells} are done ({share:.1} %)");
         rows.row("cells", done)?;
-        if let Some(rate) = self.rate() {
-            let left = self.seconds_left().map_or("unknown".to_owned(), seconds);
+        if let Some(rate) = progress.cells_per_second() {
+            let left = progress
+                .seconds_left()
+                .map_or("unknown".to_owned(), seconds);
             rows.row("rate", format!("{} cells/s, {left} left", prefixed(rate)))?;
         }
         let flagged = FLAGS.iter().map(|(_, name)| *name);
@@ -237,14 +180,15 @@ impl Status {
         }
         let unflagged = grouped(self.statuses.unflagged);
         rows.row("status", format!("{:<14} {unflagged} cells", "unflagged"))?;
-        for s in self.shards.iter().filter(|_| self.shards.len() > 1) {
+        let shards = progress.shards.iter().map(|shard| &shard.done);
+        for s in shards.filter(|_| progress.shards.len() > 1) {
             let state = if s.running { ", running" } else { "" };
             let (done, pieces) = (grouped(s.pieces_done), grouped(s.pieces));
             let text = format!("{:<8} {done} of {pieces} pieces{state}", s.shard);
             rows.row("shard", text)?;
         }
-        for s in self.shards.iter().filter(|s| s.damaged_files > 0) {
-            let (files, shard) = (grouped(s.damaged_files), &s.shard);
+        for (shard, files) in self.shards().filter(|(_, files)| *files > 0) {
+            let (files, shard) = (grouped(files), shard.done.shard);
             let text = format!("{files} files of shard {shard}: the next run mends them");
             rows.row("damaged", text)?;
         }
@@ -252,12 +196,13 @@ impl Status {
     }
 
     fn state(&self) -> &'static str {
-        match (self.complete, self.running()) {
-            (true, _) if self.shards.is_empty() => "complete",
+        let progress = &self.progress;
+        match (progress.complete, progress.running()) {
+            (true, _) if progress.shards.is_empty() => "complete",
             (true, true) => "complete, and being computed again",
             (true, false) => "complete; what is computed of another one is told here",
             (false, true) => "running",
-            (false, false) if self.cells_done == self.cells && self.shards.len() > 1 => {
+            (false, false) if progress.to_merge() => {
                 "all shards are complete; `slipmap merge` makes the map"
             }
             (false, false) => {

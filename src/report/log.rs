@@ -9,12 +9,16 @@ use std::time::{Duration, Instant, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::numbers::representable;
-use super::progress::Progress;
 use crate::store::regular;
 use crate::sweep::{Event, Observer, Shard};
 
 /// Time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+/// The end of a log that tells the start of a run, but where hundreds of files were damaged.
+const USUAL_END: u64 = 64 << 10;
+/// The most bytes of a log that are read.
+const MOST_OF_LOG: u64 = 64 << 20;
 
 /// One line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,6 +102,44 @@ pub fn path(map: &Path, shard: Shard) -> PathBuf {
     }
     name.push(".log");
     map.with_file_name(name)
+}
+
+/// The start of the last run that a log tells of, and the number of cells that it had to compute;
+/// none where no line tells.
+pub(crate) fn last_start(log: &Path) -> Option<(SystemTime, u64)> {
+    // A file of another kind may be one long line.
+    let mut ends = [USUAL_END, MOST_OF_LOG].into_iter();
+    ends.find_map(|most| start_in(&regular::end(log, most).ok()?))
+}
+
+/// The start of the last run in the lines of the end of a log, which may be cut off in the first of
+/// them.
+fn start_in(lines: &[u8]) -> Option<(SystemTime, u64)> {
+    let mut found = None;
+    for line in lines.split(|&byte| byte == b'\n') {
+        let Ok(LogLine { time, entry }) = serde_json::from_slice(line) else {
+            continue;
+        };
+        let Ok(time) = humantime::parse_rfc3339(&time) else {
+            continue;
+        };
+        match entry {
+            Entry::Started { cells_left, .. } => found = Some((time, cells_left)),
+            // Its run started before the lines.
+            Entry::Progress {
+                cells_computed,
+                cells_left,
+                cells_per_second,
+            } if found.is_none() => {
+                let seconds = cells_computed as f64 / cells_per_second;
+                let elapsed = Duration::try_from_secs_f64(seconds).ok();
+                let start = elapsed.and_then(|elapsed| time.checked_sub(elapsed));
+                found = start.map(|start| (start, cells_computed.saturating_add(cells_left)));
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 impl Log {
@@ -194,12 +236,53 @@ impl Observer for Log {
     }
 }
 
-/// Sends events both to the terminal and to the log.
-pub struct Both<'a>(pub &'a Progress, pub &'a Log);
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Observer for Both<'_> {
-    fn event(&self, event: &Event) {
-        self.0.event(event);
-        self.1.event(event);
+    /// Lines of a run that started at the second `start` after 12:00 and had 1000 cells to compute.
+    fn run(start: u32, lines: u32) -> String {
+        let time = |second: u32| format!("2026-01-01T12:{:02}:{:02}Z", second / 60, second % 60);
+        let mut text = format!(
+            "{{\"time\":\"{}\",\"event\":\"started\",\"shard\":\"1/1\",\"program_version\":\"0\",\
+             \"process\":1,\"threads\":1,\"cells\":2000,\"cells_left\":1000}}\n",
+            time(start)
+        );
+        for line in 1..=lines {
+            let (time, computed) = (time(start + 10 * line), 5 * line);
+            text += &format!(
+                "{{\"time\":\"{time}\",\"event\":\"progress\",\"cells_computed\":{computed},\
+                 \"cells_left\":{},\"cells_per_second\":0.5}}\n",
+                1000 - computed
+            );
+        }
+        text
+    }
+
+    #[test]
+    fn the_last_start_is_found_in_any_end_of_a_log() {
+        let noon = humantime::parse_rfc3339("2026-01-01T12:00:00Z").unwrap();
+        let after = |seconds: u64| Some((noon + Duration::from_secs(seconds), 1000));
+        let (first, last) = (run(0, 9), run(200, 20));
+        let both = format!("{first}{last}");
+        for cut in 0..both.len() {
+            let end = &both.as_bytes()[cut..];
+            // Lines that end before the cut tell nothing.
+            let told = match both[cut..].matches('\n').count() {
+                0 => unreachable!(),
+                1 if !both[cut..].starts_with('{') => None,
+                _ => after(200),
+            };
+            assert_eq!(start_in(end), told, "{cut}");
+        }
+        assert_eq!(start_in(first.as_bytes()), after(0));
+        assert_eq!(start_in(b"\xff\n\n{}\n"), None);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.h5.log");
+        assert_eq!(last_start(&path), None);
+        // Nothing but the beginning of a long log tells.
+        let other = "\u{e9}".repeat(USUAL_END as usize);
+        std::fs::write(&path, format!("{}{other}\n", run(7, 0))).unwrap();
+        assert_eq!(last_start(&path), after(7));
     }
 }

@@ -10,7 +10,7 @@
 //! - `visible`: makes control characters visible before a text reaches a terminal
 
 mod known;
-#[cfg(feature = "cli")]
+#[cfg(feature = "serve")]
 pub mod log;
 pub mod numbers;
 #[cfg(feature = "picture")]

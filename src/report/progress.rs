@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
+use super::log::Log;
 use super::numbers::{grouped, prefixed, seconds};
 use super::visible::visible_line;
 use crate::sweep::{Event, Observer};
@@ -146,5 +147,15 @@ impl Observer for Progress {
             Event::PieceDone { cells } => self.advanced(*cells),
             Event::Finished => self.clear(),
         }
+    }
+}
+
+/// Sends events both to the terminal and to the log.
+pub struct Both<'a>(pub &'a Progress, pub &'a Log);
+
+impl Observer for Both<'_> {
+    fn event(&self, event: &Event) {
+        self.0.event(event);
+        self.1.event(event);
     }
 }

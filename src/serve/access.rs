@@ -1,4 +1,4 @@
-//! Access to the server: for holders of its token, and from its own page.
+//! Access to the server: for holders of its tokens, and from its own page.
 //!
 //! Login nodes are shared, so a port that anybody can reach is no protection. Nor is the address:
 //! any page in a browser can send requests to a port of this machine.
@@ -25,10 +25,20 @@ pub(super) enum Hosts {
     Tunnel,
 }
 
-/// The credentials that requests need.
+/// What the holder of a token may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// All that the server does.
+    Any,
+    /// Only look.
+    Look,
+}
+
+/// The credentials that requests need: a token for each role.
 #[derive(Debug)]
 pub(super) struct Access {
     token: String,
+    token_to_look: String,
     hosts: Hosts,
     cookie_name: String,
 }
@@ -45,7 +55,7 @@ pub(super) enum Refusal {
 }
 
 /// `count` random bytes, in hexadecimal.
-fn random(count: usize) -> io::Result<String> {
+pub(super) fn random(count: usize) -> io::Result<String> {
     let mut bytes = vec![0; count];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
     Ok(crate::text::in_hexadecimal(&bytes))
@@ -87,7 +97,7 @@ fn is_address(name: &str, address: IpAddr) -> bool {
 impl Access {
     /// Access with a new token.
     pub(super) fn new(hosts: Hosts) -> io::Result<Self> {
-        let token = random(BYTES)?;
+        let [token, token_to_look] = [random(BYTES)?, random(BYTES)?];
         // The ports of a host share their cookies, and a tunnel may end at any port.
         let cookie_name = match hosts {
             Hosts::Own(port) | Hosts::And(_, port) => format!("slipmap-{port}"),
@@ -95,29 +105,30 @@ impl Access {
         };
         Ok(Self {
             token,
+            token_to_look,
             hosts,
             cookie_name,
         })
     }
 
-    pub(super) fn token(&self) -> &str {
-        &self.token
+    /// The token of a role.
+    pub(super) fn token(&self, role: Role) -> &str {
+        match role {
+            Role::Any => &self.token,
+            Role::Look => &self.token_to_look,
+        }
     }
 
     /// The cookie that replaces the token in the link.
-    pub(super) fn cookie(&self) -> String {
-        let (name, token) = (&self.cookie_name, &self.token);
+    pub(super) fn cookie(&self, role: Role) -> String {
+        let (name, token) = (&self.cookie_name, self.token(role));
         format!("{name}={token}; HttpOnly; SameSite=Strict; Path=/")
     }
 
-    /// Whether `offered` is the token. The time taken does not reveal how much of it is right.
-    pub(super) fn is_token(&self, offered: &str) -> bool {
-        let (offered, token) = (offered.as_bytes(), self.token.as_bytes());
-        let differ = offered
-            .iter()
-            .zip(token)
-            .fold(0, |all, (a, b)| all | (a ^ b));
-        offered.len() == token.len() && differ == 0
+    /// The role whose token `offered` is.
+    pub(super) fn role(&self, offered: &str) -> Option<Role> {
+        let roles = [Role::Any, Role::Look].map(|role| (role, same(offered, self.token(role))));
+        roles.into_iter().find_map(|(role, is)| is.then_some(role))
     }
 
     /// Checks that a request names this host, by a name that a browser on this machine has for it.
@@ -128,9 +139,9 @@ impl Access {
         }
     }
 
-    /// Checks that a request has the token, as a cookie or as a bearer token. Unless it only reads,
-    /// it must also come from the page itself or from no page.
-    pub(super) fn check(&self, method: &Method, headers: &HeaderMap) -> Result<(), Refusal> {
+    /// The role of who sends a request, by the token that it has, as a cookie or as a bearer token.
+    /// Unless it only reads, it must also come from the page itself or from no page.
+    pub(super) fn check(&self, method: &Method, headers: &HeaderMap) -> Result<Role, Refusal> {
         let bearer = headers
             .get(AUTHORIZATION)
             .and_then(|value| value.to_str().ok());
@@ -140,15 +151,12 @@ impl Access {
         let cookies = cookies.filter_map(|value| value.to_str().ok());
         let mut cookies = cookies.flat_map(|value| value.split("; "));
         let cookie = cookies.find_map(|cookie| cookie.strip_prefix(&prefix));
-        let known = [bearer, cookie]
-            .into_iter()
-            .flatten()
-            .any(|token| self.is_token(token));
-        if !known {
+        let mut offered = [bearer, cookie].into_iter().flatten();
+        let Some(role) = offered.find_map(|token| self.role(token)) else {
             return Err(Refusal::Token);
-        }
+        };
         match method == Method::GET || method == Method::HEAD || Self::is_own(headers) {
-            true => Ok(()),
+            true => Ok(role),
             false => Err(Refusal::Origin),
         }
     }
@@ -163,6 +171,13 @@ impl Access {
         let own = format!("http://{}", host.unwrap_or_default());
         site.is_none_or(|site| site == "same-origin") && origin.is_none_or(|origin| origin == own)
     }
+}
+
+/// Whether two texts are the same. The time taken does not reveal how much of them is.
+fn same(offered: &str, token: &str) -> bool {
+    let (offered, token) = (offered.as_bytes(), token.as_bytes());
+    let differ = { offered.iter().zip(token) }.fold(0, |all, (a, b)| all | (a ^ b));
+    offered.len() == token.len() && differ == 0
 }
 
 /// A header is there more than once, or is no text.
@@ -194,9 +209,14 @@ mod tests {
     #[test]
     fn tokens_are_long_and_never_the_same() {
         let [one, other] = [(); 2].map(|()| Access::new(Hosts::Own(80)).unwrap());
-        assert_eq!(one.token().len(), 2 * BYTES);
-        assert!(one.is_token(one.token()) && !one.is_token(other.token()));
-        assert!(!one.is_token("") && !one.is_token(&one.token()[1..]));
+        for role in [Role::Any, Role::Look] {
+            let token = one.token(role);
+            assert_eq!(token.len(), 2 * BYTES);
+            assert_eq!(one.role(token), Some(role));
+            for wrong in [other.token(role), "", &token[1..]] {
+                assert_eq!(one.role(wrong), None);
+            }
+        }
     }
 
     #[test]
@@ -270,7 +290,10 @@ mod tests {
     #[test]
     fn writes_come_from_the_page_itself() {
         let access = Access::new(Hosts::Own(8080)).unwrap();
-        let cookie = ("cookie", format!("a=b; slipmap-8080={}", access.token()));
+        let cookie = (
+            "cookie",
+            format!("a=b; slipmap-8080={}", access.token(Role::Any)),
+        );
         let host = ("host", "localhost:8080".to_owned());
         let own = ("origin", "http://localhost:8080".to_owned());
         let other = ("origin", "http://localhost:9090".to_owned());
@@ -279,8 +302,8 @@ mod tests {
             let list: Vec<_> = list.iter().map(|pair| (*pair).clone()).collect();
             access.check(&method, &headers(&list))
         };
-        assert_eq!(check(Method::POST, &[&host, &cookie, &own]), Ok(()));
-        assert_eq!(check(Method::POST, &[&host, &cookie]), Ok(()));
+        assert_eq!(check(Method::POST, &[&host, &cookie, &own]), Ok(Role::Any));
+        assert_eq!(check(Method::POST, &[&host, &cookie]), Ok(Role::Any));
         assert_eq!(
             check(Method::POST, &[&host, &cookie, &other]),
             Err(Refusal::Origin)
@@ -290,7 +313,10 @@ mod tests {
             Err(Refusal::Origin)
         );
         let same = ("sec-fetch-site", "same-origin".to_owned());
-        assert_eq!(check(Method::POST, &[&host, &cookie, &own, &same]), Ok(()));
+        assert_eq!(
+            check(Method::POST, &[&host, &cookie, &own, &same]),
+            Ok(Role::Any)
+        );
         for twice in [
             [&own, &other],
             [&other, &own],
@@ -304,10 +330,16 @@ mod tests {
                 "{twice:?}"
             );
         }
-        assert_eq!(check(Method::GET, &[&host, &cookie, &cross]), Ok(()));
+        assert_eq!(check(Method::GET, &[&host, &cookie, &cross]), Ok(Role::Any));
         assert_eq!(check(Method::GET, &[&host]), Err(Refusal::Token));
-        let bearer = ("authorization", format!("Bearer {}", access.token()));
-        assert_eq!(check(Method::GET, &[&host, &bearer]), Ok(()));
+        let bearer = (
+            "authorization",
+            format!("Bearer {}", access.token(Role::Any)),
+        );
+        assert_eq!(check(Method::GET, &[&host, &bearer]), Ok(Role::Any));
+        let look = format!("Bearer {}", access.token(Role::Look));
+        let look = ("authorization", look);
+        assert_eq!(check(Method::GET, &[&host, &look]), Ok(Role::Look));
         let wrong = ("authorization", format!("Bearer {}", "0".repeat(64)));
         assert_eq!(check(Method::GET, &[&host, &wrong]), Err(Refusal::Token));
     }

@@ -2,18 +2,19 @@
 
 use std::sync::Arc;
 
-use axum::Router;
 use axum::extract::{DefaultBodyLimit, Query, Request, State};
 use axum::http::header::{self, HeaderName, HeaderValue};
 use axum::http::{StatusCode, Uri};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use axum::{Extension, Router};
 use serde::Deserialize;
 
-use super::access::Access;
+use super::access::{Access, Role};
 use super::connections;
-use super::maps::{self, Maps};
+use super::jobs::{self, Jobs};
+use super::maps;
 use super::problem::{Problem, nothing_here};
 use super::room::Room;
 use super::served::Served;
@@ -33,14 +34,16 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
     data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// The router of all addresses.
-pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router {
+pub(super) fn routes(access: Arc<Access>, work: Work, jobs: Jobs) -> Router {
     let served = Served {
         access,
         work,
         room: Room::of(ROOM),
         slow_room: Room::of(SLOW_ROOM),
     };
-    let interface = computed::routes().merge(maps::routes(maps));
+    let interface = computed::routes()
+        .merge(maps::routes(Arc::clone(&jobs.maps)))
+        .merge(jobs::routes(Arc::new(jobs), &served));
     let all = openapi::described(interface)
         .route("/", get(front))
         .route("/{asset}", get(page::asset))
@@ -55,16 +58,18 @@ pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router
 }
 
 /// Refuses requests without access, and adds the restrictions for browsers to every answer.
-async fn guarded(State(served): State<Served>, request: Request, next: Next) -> Response {
+async fn guarded(State(served): State<Served>, mut request: Request, next: Next) -> Response {
     let (method, headers) = (request.method(), request.headers());
-    let checked = served.access.check_host(headers);
-    let checked = match link_token(request.uri()) {
-        // The link has the token in its address.
-        Some(token) if served.access.is_token(&token) => checked,
-        _ => checked.and_then(|()| served.access.check(method, headers)),
+    // The link has the token in its address.
+    let linked = link_token(request.uri()).and_then(|token| served.access.role(&token));
+    let checked = match (served.access.check_host(headers), linked) {
+        (Err(refusal), _) => Err(refusal),
+        (Ok(()), Some(role)) => Ok(role),
+        (Ok(()), None) => served.access.check(method, headers),
     };
     let mut response = match checked {
-        Ok(()) => {
+        Ok(role) => {
+            request.extensions_mut().insert(role);
             connections::is_answered(&request);
             next.run(request).await
         }
@@ -109,11 +114,15 @@ fn link_token(uri: &Uri) -> Option<String> {
 
 /// The page. A token in the address becomes a cookie and is removed from the address. A redirect
 /// would not do: without the cookie, if the link was followed from another page.
-async fn front(State(served): State<Served>, uri: Uri) -> Result<Response, Problem> {
+async fn front(
+    State(served): State<Served>,
+    Extension(role): Extension<Role>,
+    uri: Uri,
+) -> Result<Response, Problem> {
     if link_token(&uri).is_none() {
         return Ok(page::front());
     }
-    let cookie = HeaderValue::from_str(&served.access.cookie());
+    let cookie = HeaderValue::from_str(&served.access.cookie(role));
     let cookie = cookie
         .map_err(|_| Problem::of(StatusCode::INTERNAL_SERVER_ERROR, "the cookie is no header"))?;
     Ok(([(header::SET_COOKIE, cookie)], page::onwards()).into_response())

@@ -2,11 +2,12 @@
 
 use axum::body::Bytes;
 use axum::extract::State;
-use axum::http::header::{self, HeaderMap};
+use axum::http::header::HeaderMap;
 use axum::response::Response;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::asked::text;
 use super::openapi::Encoded;
 use super::problem::{Denied, Problem, Refused};
 use super::served::Served;
@@ -43,20 +44,6 @@ mod examples {
         v_s = 0.5\n\n[start]\nx_dot0 = 0.3535\n";
     pub(super) const LAW: &str = "[friction]\nlaw = \"stribeck\"\nmu0 = 0.4\nv_s = 0.5\n";
     pub(super) const FORMULA: &str = "[friction]\nlaw = \"formula\"\nmu_k = \"mu0 + sigma*v\"\n";
-}
-
-/// The text of a request.
-fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
-    let mut kinds = headers.get_all(header::CONTENT_TYPE).iter();
-    let kind = kinds.next().filter(|_| kinds.next().is_none());
-    let kind = kind.and_then(|kind| kind.to_str().ok());
-    // A semicolon is followed by a charset, and TOML has only one.
-    let kind = kind.and_then(|kind| kind.split(';').next()).map(str::trim);
-    if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/toml")) {
-        return Err(Problem::no_toml());
-    }
-    let text = std::str::from_utf8(body);
-    Ok(text.map_err(|_| Problem::no_text())?.to_owned())
 }
 
 /// The answer to a text.

@@ -3,6 +3,7 @@
 //! ```text
 //! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law, formula → explore
 //!                                  → /api/v1/maps → maps → processes that read files
+//!                                  → /api/v1/jobs, plan, events → jobs → queue
 //! ```
 //!
 //! Requests are TOML as in files. Answers are JSON or, for charts, arrays of numbers
@@ -10,8 +11,10 @@
 //!
 //! - `access`: who may use the server
 //! - `api`: addresses and their answers
+//! - `asked`: what requests carry
 //! - `computed`: requests that are computed on demand
 //! - `connections`: how many connections there are, and for how long
+//! - `jobs`: sweeps that wait in the folder: handed in, changed, told
 //! - `leaving`: whether the client of a request is still there
 //! - `maps`: maps from files: a list, and windows on them
 //! - `openapi`: the description of the interface
@@ -21,13 +24,16 @@
 //! - `room`: memory for answers, until they are sent
 //! - `served`: the state that all answers share
 //! - `socket`: a socket in the file system, for tunnels
+//! - `streamed`: answers whose parts are made one after the other
 //! - `work`: computations on few threads, quick ones beside slow ones, for a limited time, ended
 //!   when the client has gone
 
 mod access;
 mod api;
+mod asked;
 mod computed;
 mod connections;
+mod jobs;
 mod leaving;
 mod maps;
 mod openapi;
@@ -38,20 +44,22 @@ mod room;
 mod served;
 #[cfg(unix)]
 mod socket;
+mod streamed;
 mod work;
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use access::{Access, Hosts};
+use access::{Access, Hosts, Role};
 use connections::Listener;
+use jobs::{Jobs, Submission};
 use maps::Maps;
 pub use maps::{ReaderCommand, read_map};
 use work::Work;
 
 /// Threads that may wait for files and processes.
-const BESIDES: usize = 6;
+const BESIDES: usize = 12;
 
 /// Where a server listens.
 #[derive(Debug, Clone)]
@@ -84,6 +92,8 @@ pub struct Serving {
     pub folder: PathBuf,
     /// How to start a process that reads a map.
     pub reader: ReaderCommand,
+    /// Whether sweeps may be handed in, and how many bytes of the disk then stay free.
+    pub submit: Option<u64>,
 }
 
 /// A bound socket.
@@ -101,7 +111,7 @@ pub struct Server {
     address: SocketAddr,
     access: Arc<Access>,
     threads: usize,
-    maps: Arc<Maps>,
+    jobs: Jobs,
 }
 
 impl Server {
@@ -130,12 +140,17 @@ impl Server {
                 (bound, (Ipv4Addr::LOCALHOST, *port).into(), Hosts::Tunnel)
             }
         };
+        let maps = Arc::new(Maps::below(&serving.folder, serving.reader.clone()));
+        let submission = Submission {
+            keep_free: serving.submit,
+            threads: serving.threads,
+        };
         Ok(Self {
             bound,
             address,
             access: Arc::new(Access::new(hosts)?),
             threads: serving.threads,
-            maps: Arc::new(Maps::below(&serving.folder, serving.reader.clone())),
+            jobs: Jobs::of(&serving.folder, submission, maps)?,
         })
     }
 
@@ -143,12 +158,22 @@ impl Server {
     /// the near end of a tunnel.
     #[must_use]
     pub fn link(&self) -> String {
+        self.link_of(Role::Any)
+    }
+
+    /// The link for those who may only look.
+    #[must_use]
+    pub fn link_to_look(&self) -> String {
+        self.link_of(Role::Look)
+    }
+
+    fn link_of(&self, role: Role) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
             // The server listens at all addresses; a browser on this machine can use this one.
             address.set_ip(Ipv4Addr::LOCALHOST.into());
         }
-        format!("http://{address}/?token={}", self.access.token())
+        format!("http://{address}/?token={}", self.access.token(role))
     }
 
     /// Answers until `stopped` is true.
@@ -162,7 +187,7 @@ impl Server {
             .enable_all()
             .build()?;
         let work = Work::new(self.threads);
-        let app = api::routes(self.access, work, self.maps);
+        let app = api::routes(self.access, work, self.jobs);
         let ended = runtime.block_on(async move {
             let (listener, _socket) = self.bound.listener()?;
             let until = async move {

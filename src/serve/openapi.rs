@@ -35,6 +35,8 @@ const ADDRESS: &str = "/api/v1/openapi.json";
     tags(
         (name = "computed", description = "Computed now"),
         (name = "maps", description = "From the maps below a folder"),
+        (name = "jobs", description = "Sweeps that wait for a worker, with `--submit`"),
+        (name = "events", description = "What has changed"),
     ),
     security(("bearer" = []), ("cookie" = [])),
     modifiers(&Keys),

@@ -81,6 +81,7 @@ impl Inlined {
         let Some(entry) = curve(&all) else {
             return Ok(Self::unchanged(text));
         };
+        refuse_spread(&entry, text)?;
         let keys = CurveKeys::of(&entry, &all)?;
         let name = match &keys.source {
             Source::Text(columns) => return Ok(Self::with_columns(text, &entry, columns, &keys)?),
@@ -116,6 +117,7 @@ impl Inlined {
         let Some(entry) = curve(&all).filter(Entry::is_table) else {
             return Ok(Self::unchanged(text));
         };
+        refuse_spread(&entry, text)?;
         let keys = CurveKeys::of(&entry, &all)?;
         match &keys.source {
             Source::Text(columns) => Self::with_columns(text, &entry, columns, &keys),
@@ -205,6 +207,16 @@ fn curve<'t>(all: &[Entry<'t>]) -> Option<Entry<'t>> {
     let inside = friction.filter_map(|entry| entry.table().ok()).flatten();
     let mut tables = inside.filter(|entry| entry.key == PAIRS);
     tables.find(|entry| entry.string().is_ok() || entry.is_table())
+}
+
+/// Refuses a table whose keys are spread over lines: its points take the place of one value.
+fn refuse_spread(entry: &Entry, text: &str) -> Result<(), SpecError> {
+    let is_one_value = !entry.is_table() || text[entry.span.clone()].starts_with('{');
+    if is_one_value {
+        return Ok(());
+    }
+    let message = "its keys stand in braces, as in table = { file = \"curve.csv\" }";
+    Err(entry.error(message))
 }
 
 /// Where the columns of a curve are, as entries of strings.
@@ -332,6 +344,23 @@ mod tests {
         .map_err(|error| match error {
             NotInlined::Here(error) | NotInlined::There { error, .. } => error,
         })
+    }
+
+    /// Keys of a table on lines of their own are no one value that points can take the place of.
+    #[test]
+    fn a_spread_table_is_refused_at_its_place() {
+        let axes = "[axes]\nv0 = [0.1]\ntau = [1]\n";
+        for friction in [
+            "[friction]\nlaw = \"table\"\ntable.text = \"0 0.5\"\n",
+            "[friction]\nlaw = \"table\"\n[friction.table]\nfile = \"curve.csv\"\n",
+        ] {
+            let text = format!("{friction}{axes}");
+            let error = inlined(&text).unwrap_err();
+            assert!(error.message.contains("stand in braces"), "{error}");
+            assert!(error.span.is_some());
+        }
+        let pasted = Inlined::pasted("friction.table.text = \"0 0.5\"\n");
+        assert!(pasted.unwrap_err().message.contains("stand in braces"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::error::StoreError;
 
 /// Writes a new file and makes it durable. Whatever stands at `path` already, such as a planted
 /// link, is not written to.
-pub(super) fn write_synced(
+pub(crate) fn write_synced(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
 ) -> Result<(), StoreError> {
@@ -30,20 +30,20 @@ pub(super) fn write_synced(
 }
 
 /// Makes a file or a folder durable.
-pub(super) fn sync(path: &Path) -> Result<(), StoreError> {
+pub(crate) fn sync(path: &Path) -> Result<(), StoreError> {
     let synced = File::open(path).and_then(|file| file.sync_all());
     synced.map_err(StoreError::io("sync", path))
 }
 
 /// Gives a durable file its final name, durably, replacing what stood there.
-pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> {
+pub(crate) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> {
     fs::rename(part, path).map_err(StoreError::io("rename to", path))?;
     sync_name(path)
 }
 
 /// Makes the name of a file or a folder durable by syncing its parent. Without this a folder can be
 /// lost with all its contents, however often those were synced.
-pub(super) fn sync_name(path: &Path) -> Result<(), StoreError> {
+pub(crate) fn sync_name(path: &Path) -> Result<(), StoreError> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => sync(folder),
         _ => sync(Path::new(".")),

@@ -12,7 +12,7 @@ const LOOKED_AT: Duration = Duration::from_secs(2);
 
 /// Locks the file `path`, creating it if needed; none where another process holds the lock. A lock
 /// file left by a run that died is no obstacle, nor is a process that looks whether it is held.
-pub(super) fn acquire(path: &Path) -> Result<Option<File>, Error> {
+pub(crate) fn acquire(path: &Path) -> Result<Option<File>, Error> {
     let begun = Instant::now();
     loop {
         let lock = regular::lock_file(path).map_err(|not| match not {
@@ -45,9 +45,22 @@ fn is_shared(lock: &File) -> Result<bool, Error> {
 
 /// Whether another process holds the lock `path` at this moment. What is no regular file is no
 /// lock.
-pub(super) fn is_held(path: &Path) -> bool {
+pub(crate) fn is_held(path: &Path) -> bool {
     let lock = regular::open(path);
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// Shares the lock `path` with others that do so, creating its file if needed.
+pub(crate) fn share(path: &Path) -> Result<File, Error> {
+    let lock = regular::lock_file(path)?;
+    // Somebody may be looking whether it is shared.
+    lock.lock_shared().map(|()| lock)
+}
+
+/// Whether another process shares the lock `path` at this moment, or holds it.
+pub(crate) fn is_shared_or_held(path: &Path) -> bool {
+    let lock = regular::open(path);
+    lock.is_ok_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
 #[cfg(unix)]
@@ -94,8 +107,11 @@ mod tests {
         drop(held);
         assert!(!is_held(&path));
         // A lock that somebody keeps sharing counts as held.
-        let shared = File::open(&path).unwrap();
-        shared.lock_shared().unwrap();
+        assert!(!is_shared_or_held(&path));
+        let shared = [share(&path).unwrap(), share(&path).unwrap()];
+        assert!(is_shared_or_held(&path));
         assert!(!is_held(&path) && acquire(&path).unwrap().is_none());
+        drop(shared);
+        assert!(!is_shared_or_held(&path));
     }
 }

@@ -3,7 +3,7 @@
 //! end. No more is read than the caller takes.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -83,6 +83,19 @@ pub(crate) fn head(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     Ok(bytes)
 }
 
+/// The last bytes of a regular file, `most` or as many as it has.
+///
+/// # Errors
+/// Where [`open`] does not open the file, or it cannot be read.
+pub(crate) fn end(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+    let mut file = open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(most)))?;
+    let mut bytes = Vec::new();
+    file.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Opens a regular file to append to it. It is created where it is missing; a link is refused.
 ///
 /// # Errors
@@ -92,7 +105,7 @@ pub(crate) fn append(path: &Path) -> Result<File, NotRead> {
 }
 
 /// Opens a regular file to lock it. It is created where it is missing; a link is refused.
-pub(super) fn lock_file(path: &Path) -> Result<File, NotRead> {
+pub(crate) fn lock_file(path: &Path) -> Result<File, NotRead> {
     let mut options = OpenOptions::new();
     own(options.create(true).truncate(false).write(true), path)
 }
@@ -174,6 +187,9 @@ mod tests {
         assert_eq!(read(&path("link"), 10).unwrap(), b"0123456789");
         assert!(matches!(read(&path("file"), 9), Err(NotRead::Large(10))));
         assert_eq!(head(&path("file"), 3).unwrap(), b"012");
+        assert_eq!(end(&path("file"), 3).unwrap(), b"789");
+        assert_eq!(end(&path("file"), 30).unwrap(), b"0123456789");
+        assert!(matches!(end(&path("pipe"), 3), Err(NotRead::Foreign)));
         assert!(matches!(read(&path("none"), 9), Err(NotRead::Refused(_))));
         assert!(lock_file(&path("new")).is_ok() && append(&path("new")).is_ok());
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::SystemTime;
 
 /// The state of a file. It stays equal until the file is replaced or written to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Stamp {
     /// Length in bytes.
     pub length: u64,
@@ -22,7 +22,8 @@ impl Stamp {
         path.metadata().ok().map(|found| Self::told(&found))
     }
 
-    fn told(found: &Metadata) -> Self {
+    /// The state in what the system tells of a file.
+    pub(crate) fn told(found: &Metadata) -> Self {
         #[cfg(unix)]
         let node = std::os::unix::fs::MetadataExt::ino(found);
         #[cfg(not(unix))]

@@ -22,14 +22,20 @@ export function newFolder() {
 export const slipmap = (args, options = {}) =>
   execFileSync(PROGRAM, args, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], ...options });
 
-/** Starts a server; its link, and how to end it. */
+/** Starts a server; its link, the one for those who only look if there is such, and how to end it. */
 export async function serve(args = [], port = 0) {
   const child = spawn(PROGRAM, ["serve", "--port", String(port), ...args], {
     stdio: ["ignore", "pipe", "ignore"],
   });
   const ended = new Promise((done) => child.once("exit", done));
-  const link = await new Promise((done, failed) => {
-    child.stdout.once("data", (line) => done(String(line).trim()));
+  const wanted = args.includes("--submit") ? 2 : 1;
+  const [link, look] = await new Promise((done, failed) => {
+    let text = "";
+    child.stdout.on("data", (part) => {
+      text += part;
+      const lines = text.split("\n").slice(0, -1);
+      if (lines.length >= wanted) done(lines);
+    });
     ended.then((code) => failed(new Error(`the server ended with ${code}`)));
   });
   process.on("exit", () => child.kill("SIGKILL"));
@@ -37,7 +43,7 @@ export async function serve(args = [], port = 0) {
     child.kill("SIGTERM");
     return ended;
   };
-  return { link, end, child, token: link.split("token=")[1], port: Number(new URL(link).port) };
+  return { link, look, end, child, token: link.split("token=")[1], port: Number(new URL(link).port) };
 }
 
 /** A headless Chromium that talks to nobody else; `more` are flags besides. */

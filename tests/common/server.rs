@@ -12,9 +12,11 @@ use super::program::{Folder, LONGEST, ends_within};
 /// A server of the real program.
 pub(crate) struct Serving {
     pub child: Child,
-    _out: BufReader<ChildStdout>,
+    out: BufReader<ChildStdout>,
     pub address: String,
     pub token: String,
+    /// The token of who may only look, where there is one.
+    pub token_to_look: Option<String>,
 }
 
 impl Drop for Serving {
@@ -48,20 +50,27 @@ impl Serving {
         Self::of(&mut folder.command(&[&usual, more].concat()))
     }
 
+    /// One that takes sweeps.
+    pub(crate) fn submitting(folder: &Folder, more: &[&str]) -> Self {
+        let mut serving = Self::with(folder, &[&["--submit"], more].concat());
+        let (address, token) = link(&mut serving.out);
+        assert_eq!(address, serving.address);
+        serving.token_to_look = Some(token);
+        serving
+    }
+
     /// By a command.
     pub(crate) fn of(command: &mut std::process::Command) -> Self {
         command.stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = ends_within(command, LONGEST).spawn().unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap());
-        let mut link = String::new();
-        lines.read_line(&mut link).unwrap();
-        let link = link.trim().strip_prefix("http://").unwrap();
-        let (address, token) = link.split_once("/?token=").unwrap();
+        let mut out = BufReader::new(child.stdout.take().unwrap());
+        let (address, token) = link(&mut out);
         Self {
-            address: address.to_owned(),
-            token: token.to_owned(),
+            address,
+            token,
+            token_to_look: None,
             child,
-            _out: lines,
+            out,
         }
     }
 
@@ -119,6 +128,15 @@ impl Serving {
         ];
         self.request(&format!("POST /api/v1/{what}"), &headers, toml)
     }
+}
+
+/// The address and the token of a link, a line of its own.
+fn link(out: &mut impl BufRead) -> (String, String) {
+    let mut line = String::new();
+    out.read_line(&mut line).unwrap();
+    let link = line.trim().strip_prefix("http://").unwrap();
+    let (address, token) = link.split_once("/?token=").unwrap();
+    (address.to_owned(), token.to_owned())
 }
 
 /// The head of an answer in bytes, and its arrays.

@@ -194,6 +194,12 @@ int rmdir(const char *path) {
     if (fails_to_remove(is_inside(path))) return -1;
     return told(real(path), RMDIR, path, NULL);
 }
+/* A second name of a file; losses of power are not recorded for it. */
+int linkat(int from_fd, const char *from, int to_fd, const char *to, int flags) {
+    REAL(linkat);
+    if (fails(is_inside(to))) return -1;
+    return real(from_fd, from, to_fd, to, flags);
+}
 int mkdir(const char *path, mode_t mode) {
     REAL(mkdir);
     if (fails(is_inside(path))) return -1;

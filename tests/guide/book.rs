@@ -221,9 +221,18 @@ fn what_is_not_run_is_listed_and_exists() {
         let Some(command) = words.get(at + 1).filter(|word| !word.starts_with('-')) else {
             continue;
         };
-        let help = out(&folder.run(&[command, "--help"]));
+        // With the help of a command below it, such as `jobs hold`.
+        let below = words
+            .get(at + 2)
+            .filter(|word| *command == "jobs" && !word.contains('/'));
+        let mut help = out(&folder.run(&[command, "--help"]));
+        help += &below.map_or_else(String::new, |below| {
+            out(&folder.run(&[command, below, "--help"]))
+        });
         assert!(help.contains("Usage"), "{line}");
-        for flag in words.iter().filter(|word| word.starts_with("--")) {
+        // What stands behind -- is for another program.
+        let ours = words.iter().take_while(|word| **word != "--");
+        for flag in ours.filter(|word| word.starts_with("--")) {
             let flag = flag.split('=').next().unwrap();
             assert!(help.contains(flag), "{flag}: {line}");
         }

@@ -11,6 +11,9 @@ mod general_rows;
 mod limited;
 #[path = "../common/map.rs"]
 mod map;
+#[cfg(target_os = "linux")]
+#[path = "../common/processes.rs"]
+mod processes;
 #[path = "../common/program.rs"]
 mod program;
 
@@ -26,6 +29,9 @@ mod manners;
 mod names;
 mod pictures;
 mod point_plot;
+mod progress;
+#[cfg(target_os = "linux")]
+mod queue;
 mod reproduce;
 mod rig;
 mod shards;

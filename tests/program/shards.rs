@@ -5,7 +5,7 @@
 
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use crate::program;
 use tempfile::TempDir;
@@ -167,20 +167,58 @@ fn task_command(
 fn any_numbers_of_an_array_are_its_shards() {
     for (first, step) in [(0, 1), (1, 1), (7, 3)] {
         let work = Work::new();
-        for number in 0..3 {
-            let array = (first, step, 3);
-            let id = first + number * step;
+        let done = |number: u32| {
+            let (array, id) = ((first, step, 3), first + number * step);
             let ended = task(&work, id, array, &["sweep.toml", "map.h5"]);
             assert!(ended.status.success(), "{ended:?}");
-        }
-        assert_eq!(work.shards(), ["1-of-3", "2-of-3", "3-of-3"]);
+        };
+        done(0);
+        done(2);
+        assert_eq!(work.shards(), ["1-of-3", "3-of-3"]);
+        done(1);
         let log = std::fs::read_to_string(work.0.path().join("map.h5.2-of-3.log")).unwrap();
         assert!(log.contains("\"threads\":2"), "{log}");
-        succeed(&mut work.command(script("slurm/merge.sbatch"), &["map.h5"]));
+        // The last one has made the map, and one that is run again finds its work done.
         work.check_map();
-        // A merge that is run again, as after the failure of its node, finds its work done.
-        succeed(&mut work.command(script("slurm/merge.sbatch"), &["map.h5"]));
+        done(0);
+        work.check_map();
     }
+}
+
+/// Shards that end at the same time: one of them makes the map, and none fails.
+#[test]
+fn one_of_the_last_shards_merges() {
+    for _ in 0..3 {
+        let work = Work::new();
+        let shard = |shard: &str| {
+            let run = [
+                "run",
+                "sweep.toml",
+                "-o",
+                "map.h5",
+                "--and-merge",
+                "-q",
+                "--threads",
+                "1",
+            ];
+            let mut command = work.command("slipmap", &[&run[..], &["--shard", shard]].concat());
+            command
+                .stderr(Stdio::piped())
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap()
+        };
+        let all = ["1/4", "2/4", "3/4", "4/4"].map(shard);
+        for child in all {
+            let ended = child.wait_with_output().unwrap();
+            assert!(ended.status.success(), "{}", program::err(&ended));
+        }
+        work.check_map();
+    }
+    let refused = Work::new();
+    let alone = ["run", "sweep.toml", "--and-merge"];
+    let output = program::output(&mut refused.command("slipmap", &alone));
+    program::expect(&output, 2, "--shard");
 }
 
 #[test]
@@ -195,8 +233,14 @@ fn a_task_is_the_shard_of_its_number_where_their_number_is_given() {
 fn bad_input_of_a_task_is_not_tried_again() {
     let work = Work::new();
     std::fs::write(work.0.path().join("sweep.toml"), "fields = 3\n").unwrap();
-    let ended = task(&work, 1, (1, 1, 1), &["sweep.toml", "map.h5", "2"]);
+    let ended = task(
+        &work,
+        1,
+        (1, 1, 1),
+        &["sweep.toml", "map.h5", "2", "refused"],
+    );
     assert_eq!(ended.status.code(), Some(2));
+    assert!(work.0.path().join("refused").exists());
     let ended = task(&work, 1, (1, 1, 1), &["sweep.toml"]);
     assert_eq!(ended.status.code(), Some(2));
 }

@@ -947,7 +947,7 @@ fn the_compliance_checker_finds_nothing() {
 }
 
 /// What every command prints with `--json`, each kind of answer once.
-const ANSWERS: [(&str, &str); 22] = [
+const ANSWERS: [(&str, &str); 24] = [
     (
         "point.plain",
         "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
@@ -994,7 +994,9 @@ const ANSWERS: [(&str, &str); 22] = [
     ("plan.case", "plan case.toml"),
     ("info.map", "info sweep.h5"),
     ("info.trace", "info case.h5"),
+    ("jobs.queue", "jobs queue"),
     ("status.map", "status sweep.h5"),
+    ("status.maps", "status sweep.h5 case.h5"),
     ("verify.map", "verify sweep.h5"),
     ("reproduce.quick", "reproduce --quick"),
 ];
@@ -1015,6 +1017,7 @@ fn json_is_as_its_schema_says() {
         run(command.args(words.split(' ')))
     };
     slipmap("run --quiet sweep.toml");
+    slipmap("submit sweep.toml --to queue");
     for (name, words) in ANSWERS {
         let answer = slipmap(&format!("{words} --json"));
         std::fs::write(file(&format!("{name}.json")), answer.stdout).unwrap();

@@ -17,6 +17,12 @@ mod program;
 mod server;
 
 mod curves;
+#[cfg(target_os = "linux")]
+mod events;
+#[cfg(target_os = "linux")]
+mod jobs;
+#[cfg(target_os = "linux")]
+mod map_files;
 mod openapi;
 mod serve;
 mod serve_maps;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A map on a real Slurm: starts a controller and two nodes on the loopback interface, submits a job array with its merge,
-# kills a node and jobs midway, and compares the map with the one that a single run makes. Everything is in one temporary
+# Maps on a real Slurm: starts a controller and two nodes on the loopback interface, submits a job array, kills a node and jobs
+# midway, and compares the map with the one that a single run makes; then the same through the queue, with a worker that dies. Everything is in one temporary
 # folder and gone afterwards. Needs slurmctld, slurmd, sbatch, munged, and a Python with h5py (SLIPMAP_PYTHON).
 set -euo pipefail
 
@@ -115,6 +115,11 @@ PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 EOF
 }
 
+start_node() {
+    SLIPMAP_NODE=$1 slurmd -D -N "$1" >>"$folder/slurmd-$1-said.log" 2>&1 &
+    disown
+}
+
 start_slurm() {
     munged --foreground --force --key-file="$folder/munge.key" --socket="$folder/munge.sock" \
         --pid-file="$folder/munged.pid" --log-file="$folder/munged.log" --seed-file="$folder/munged.seed" \
@@ -123,10 +128,8 @@ start_slurm() {
     wait_for "munged" test -S "$folder/munge.sock"
     slurmctld -D >"$folder/slurmctld-said.log" 2>&1 &
     disown
-    for node in n1 n2; do
-        SLIPMAP_NODE=$node slurmd -D -N $node >"$folder/slurmd-$node-said.log" 2>&1 &
-        disown
-    done
+    start_node n1
+    start_node n2
     wait_for "idle nodes" nodes_are_idle
 }
 
@@ -195,9 +198,8 @@ say "one run"
 
 say "Slurm $(sbatch --version | cut -d' ' -f2), two nodes"
 start_slurm
-submitted=$("$root/scripts/slurm/submit.sh" sweep.toml cluster.h5 $SHARDS --cpus-per-task=2 --time=10)
-shards=$(sed -n 's/^shards //p' <<<"$submitted") merge=$(sed -n 's/^merge //p' <<<"$submitted")
-if [ -z "$shards" ] || [ -z "$merge" ]; then fail "submit.sh said: $submitted"; fi
+shards=$("$root/scripts/slurm/submit.sh" sweep.toml cluster.h5 $SHARDS --cpus-per-task=2 --time=10)
+[[ $shards =~ ^[0-9]+$ ]] || fail "submit.sh said: $shards"
 
 wait_for "shard on n1" runs_on n1
 wait_for "shard on n2" runs_on n2
@@ -229,8 +231,7 @@ wait_for "second restart of shard $third" restarted "$third" 2
 
 wait_for "restart of shard $on_n1" restarted "$on_n1"
 wait_for "end of the array" gone "$shards"
-wait_for "end of the merge" gone "$merge"
-cat slipmap-merge-*.log
+cat slipmap-"${shards}"_*.log
 for shard in 1 2 3; do
     went_on $shard
 done
@@ -247,4 +248,84 @@ wait_for "end of the cancelled task" gone "$shards"
 state=$(scontrol show job -o "${shards}_1" | grep -o 'JobState=[A-Z]*')
 [ "$state" = JobState=CANCELLED ] || fail "the cancelled task is in $state"
 grep -q interrupted "slipmap-${shards}_1.log" || fail "the program was not told to end"
+# The queue. A worker's sbatch is the real one; the first worker dies when it has submitted, before it knows.
+mkdir bin
+cat >bin/sbatch <<EOF
+#!/bin/sh
+echo submitted >>"$folder/submissions"
+"$(command -v sbatch)" "\$@" || exit
+if [ ! -e "$folder/worker-died" ]; then
+    : >"$folder/worker-died"
+    kill -KILL \$PPID
+    sleep 1
+fi
+EOF
+chmod +x bin/sbatch
+
+# work [OPTION…]: a worker, which hands each sweep to Slurm as so many shards.
+work() {
+    PATH=$PWD/bin:$PATH "$SLIPMAP" work queued --slurm $SHARDS --poll-every 0.5 --first-pause 0 "$@" \
+        -- --cpus-per-task=2 --time=10 >>work.log 2>&1
+}
+
+# job_is STATE: what the queue says of the sweep.
+job_is() {
+    "$SLIPMAP" jobs queued --json | "$python" -c '
+import json, sys
+jobs = json.load(sys.stdin)["jobs"]
+sys.exit([job["state"] for job in jobs if job["name"] == "100000-sweep"] != [sys.argv[1]])' "$1"
+}
+
+array_is_there() { squeue -h -o %j | grep -q '^slipmap-100000-sweep-'; }
+no_array_is_there() { ! array_is_there; }
+worker_has_ended() { ! kill -0 "$worker" 2>/dev/null; }
+queued_map=queued/100000-sweep.h5
+
+start_node n1
+wait_for "idle nodes" nodes_are_idle
+say "a worker dies between sbatch and its note"
+"$SLIPMAP" submit sweep.toml --to queued
+if work --until-empty; then fail "the worker did not die"; fi
+[ -e "$folder/worker-died" ] || fail "the worker died of something else"
+array_is_there || fail "nothing was submitted"
+work --until-empty &
+worker=$!
+disown
+wait_for "shard on n1" runs_on n1
+on_n1=$(task_on n1)
+wait_for "pieces of shard $on_n1" more_than 0 $queued_map "$on_n1"
+[ "$(wc -l <"$folder/submissions")" = 1 ] || fail "it was submitted twice"
+job_is running || fail "the sweep is not running"
+
+say "the sweep is held, and released"
+"$SLIPMAP" jobs hold 100000-sweep --in queued
+wait_for "end of the held array" no_array_is_there
+job_is held || fail "the sweep is not held"
+computed=$(pieces $queued_map "$on_n1")
+[ "$computed" -gt 0 ] || fail "what was computed is gone"
+wait_for "end of the worker" worker_has_ended
+"$SLIPMAP" jobs release 100000-sweep --in queued
+work --until-empty &
+worker=$!
+disown
+wait_for "more pieces of shard $on_n1" more_than "$computed" $queued_map "$on_n1"
+
+say "a node fails under the sweep"
+wait_for "shard on n2" runs_on n2
+kill_node n2
+start_node n2
+wait_for "end of the worker" worker_has_ended
+cat work.log
+job_is done || fail "the sweep is not done"
+"$python" "$here/same_map.py" single.h5 $queued_map
+[ ! -e $queued_map.tiles ] || fail "tiles are left"
+[ -z "$(find queued -name '.*slurm*')" ] || fail "logs of Slurm are left"
+
+say "bad input fails at once, and says why"
+"$SLIPMAP" submit sweep.toml --to refused
+cp single.h5 refused/100000-sweep.h5
+sed -i 's/points = 801/points = 800/' refused/queue/100000-sweep.toml
+touch -d '1 minute ago' refused/queue/100000-sweep.toml
+if "$SLIPMAP" work refused --slurm 2 --poll-every 0.5 --until-empty; then fail "it did not fail"; fi
+grep -q 'the map of another sweep' refused/failed/100000-sweep.txt || fail "it does not say why"
 say "done in $SECONDS s"

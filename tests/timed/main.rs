@@ -21,6 +21,8 @@ mod server;
 
 mod faults;
 mod overnight;
+#[cfg(target_os = "linux")]
+mod queue;
 mod serve_beside;
 mod shared_v0;
 mod stops;

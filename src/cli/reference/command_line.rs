@@ -33,12 +33,13 @@ pub(super) fn command_line(page: &mut String) {
         if command.is_hide_set() || command.get_name() == "help" {
             continue;
         }
-        one_command(page, command);
+        one_command(page, command, command.get_name());
     }
 }
 
-fn one_command(page: &mut String, command: &Command) {
-    heading(page, 2, &code(&format!("slipmap {}", command.get_name())));
+/// A command by its name, and those below it.
+fn one_command(page: &mut String, command: &Command, name: &str) {
+    heading(page, 2, &code(&format!("slipmap {name}")));
     let about = command.get_long_about().or(command.get_about());
     paragraph(
         page,
@@ -52,6 +53,11 @@ fn one_command(page: &mut String, command: &Command) {
         page,
         command.get_arguments().filter(|arg| !arg.is_global_set()),
     );
+    for below in command.get_subcommands() {
+        if below.get_name() != "help" {
+            one_command(page, below, &format!("{name} {}", below.get_name()));
+        }
+    }
 }
 
 fn flags_of<'a>(page: &mut String, arguments: impl Iterator<Item = &'a Arg>) {

@@ -131,6 +131,9 @@ pub(super) struct MapSummary {
     pub axes: Vec<MapAxisEnds>,
     /// The names of its fields.
     pub fields: Vec<String>,
+    /// The hash of its plan: maps of one sweep have the same.
+    #[schema(required)]
+    pub plan_hash: Option<String>,
 }
 
 /// An axis.

@@ -52,6 +52,10 @@ pub(super) fn summary(look: &Look) -> MapSummary {
         cells_done: Some(look.version().1),
         axes: facts.axes.iter().map(ends).collect(),
         fields: fields.collect(),
+        plan_hash: look.told(
+            |map| map.root_text(root::PLAN_HASH),
+            |growing| Some(growing.manifest().plan_hash.clone()),
+        ),
     }
 }
 

@@ -1,6 +1,8 @@
 //! The list of maps below a folder, each with the summary from a process of its own.
 
+use std::collections::hash_map::DefaultHasher;
 use std::collections::{HashMap, HashSet};
+use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -11,12 +13,14 @@ use super::described::{MapEntry, MapList, MapSummary};
 use super::frames::{Ask, Kind};
 use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 use super::readers::refused;
-use super::scan::{Found, Mark, Scanned, scan};
+use crate::maps::scan::{Found, Mark, Scanned, scan};
 
 /// How long a scan of the folder stays valid.
 const BETWEEN_SCANS: Duration = Duration::from_secs(1);
 /// How long a list waits for maps that are not known yet.
 const PATIENCE: Duration = Duration::from_millis(1500);
+/// How long is waited until all maps are known.
+const PATIENCE_FOR_ALL: Duration = Duration::from_secs(10);
 /// The number of tries after which the time between them stops growing.
 const MOST_DOUBLED: u32 = 5;
 /// The most maps that are asked for a summary at a time.
@@ -107,16 +111,23 @@ impl List {
 
     /// Scans the names below the folder, unless that was just done.
     async fn scan(&self) {
+        self.scan_unless(|begun| begun.elapsed() < BETWEEN_SCANS)
+            .await;
+    }
+
+    /// Scans the names below the folder, unless a scan that began at that time will do.
+    async fn scan_unless(&self, will_do: impl Fn(Instant) -> bool) {
         let _one = self.scanning.lock().await;
         let at = self.known().at;
-        if at.is_some_and(|at| at.elapsed() < BETWEEN_SCANS) {
+        if at.is_some_and(will_do) {
             return;
         }
+        let begun = Instant::now();
         let folder = self.folder.clone();
         let scanned = tokio::task::spawn_blocking(move || scan(&folder)).await;
         let mut known = self.known();
         known.scanned = scanned.unwrap_or_default();
-        known.at = Some(Instant::now());
+        known.at = Some(begun);
         let there: Vec<String> = known.scanned.maps.iter().map(|f| f.id.clone()).collect();
         known.told.retain(|id, _| there.contains(id));
     }
@@ -147,6 +158,82 @@ impl List {
             }
         }
         self.told()
+    }
+
+    /// The state of all files, as a number that changes with it.
+    pub(super) async fn fingerprint(&self) -> u64 {
+        self.scan().await;
+        let mut hasher = DefaultHasher::new();
+        for found in &self.known().scanned.maps {
+            (&found.id, &found.mark, found.running).hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+
+    /// The map with an id, and whether it is complete, unless that is not known soon.
+    pub(super) async fn complete(self: &Arc<Self>, id: &str) -> Option<(Found, Option<bool>)> {
+        let found = self.find(id).await?;
+        if found.mark.file.is_none() {
+            return Some((found, Some(false)));
+        }
+        self.ask_until_known(PATIENCE, |found| found.id == id).await;
+        let known = self.known();
+        let state = known
+            .told
+            .get(id)
+            .map(|(_, told)| state(&found, Some(told)).0);
+        Some((found, state.map(|state| state == "complete")))
+    }
+
+    /// The name of a complete map in the folder itself by the hash of its plan. It is as certain as
+    /// the maps can be read; none where some cannot be for too long.
+    pub(super) async fn of_plan(self: &Arc<Self>, hash: &str) -> Option<Option<String>> {
+        let asked = Instant::now();
+        self.scan_unless(|begun| begun >= asked).await;
+        let here = |found: &Found| !found.name.contains(std::path::MAIN_SEPARATOR);
+        if !self.ask_until_known(PATIENCE_FOR_ALL, here).await {
+            return None;
+        }
+        let known = self.known();
+        let same = |found: &&Found| match known.told.get(&found.id) {
+            Some((_, told @ Told::Summary(summary))) => {
+                let of_plan = summary.plan_hash.as_deref() == Some(hash);
+                of_plan && state(found, Some(told)).0 == "complete"
+            }
+            _ => false,
+        };
+        let mut maps = known.scanned.maps.iter().filter(|found| here(found));
+        Some(maps.find(same).map(|found| found.name.clone()))
+    }
+
+    /// Waits until processes have told of the files of these maps; false if that takes too long.
+    async fn ask_until_known(
+        self: &Arc<Self>,
+        patience: Duration,
+        which: impl Fn(&Found) -> bool,
+    ) -> bool {
+        let until = tokio::time::Instant::now() + patience;
+        loop {
+            let news = self.news.notified();
+            self.ask_unknown();
+            if !self.is_unknown(&which) {
+                return true;
+            }
+            if tokio::time::timeout_at(until, news).await.is_err() {
+                return !self.is_unknown(&which);
+            }
+        }
+    }
+
+    /// Whether nothing is known yet of the file of one of these maps.
+    fn is_unknown(&self, which: &impl Fn(&Found) -> bool) -> bool {
+        let known = self.known();
+        let unknown = |found: &Found| {
+            let told = known.told.get(&found.id).map(|(mark, _)| mark.file);
+            found.odd.is_none() && found.mark.file.is_some() && told != Some(found.mark.file)
+        };
+        let mut maps = known.scanned.maps.iter();
+        maps.any(|found| which(found) && unknown(found))
     }
 
     /// Asks processes about maps that are new or have changed; returns how many.
@@ -292,12 +379,15 @@ fn entry(found: &Found, told: Option<&Told>) -> MapEntry {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
+    #[cfg(unix)]
     use super::super::test_reader::{self, hang};
+    #[cfg(unix)]
     use super::*;
 
     /// If a process exceeds its time, the file may still be sound; it is tried again.
+    #[cfg(unix)]
     #[test]
     fn what_could_not_be_read_is_tried_again() {
         let folder = tempfile::tempdir().unwrap();

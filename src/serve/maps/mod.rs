@@ -1,7 +1,7 @@
 //! Maps from files: a list of those below a folder, and windows on them.
 //!
 //! ```text
-//! [scan] names below the folder → ids → [list] what a process of each tells, remembered
+//! maps::scan: names below the folder → ids → [list] what a process of each tells, remembered
 //! [routes] request → [readers] → [places] the process that reads the map → [frames] → answer
 //!          in that process: [child] → [description], [answers] → maps::look
 //! ```
@@ -12,26 +12,26 @@
 //! - `child`: the side of the process that reads a map
 //! - `described`: the types of answers about maps, with their descriptions
 //! - `description`: the description of a map, besides its cells
+//! - `file`: the file of a map, whole or in ranges
 //! - `frames`: messages between the server and the process
 //! - `list`: the maps of a folder, each with the summary from a process of its own
 //! - `places`: the processes that may run at a time
 //! - `process`: the server's side of a process that reads a map
 //! - `readers`: asks the processes that read maps
 //! - `routes`: the addresses of requests about maps
-//! - `scan`: the files below a folder that may be maps, by their names alone
 //! - `test_reader`: a process for tests that can be held
 
 mod answers;
 mod child;
 mod described;
 mod description;
+mod file;
 mod frames;
 mod list;
 mod places;
 mod process;
 mod readers;
 mod routes;
-mod scan;
 #[cfg(all(test, unix))]
 mod test_reader;
 

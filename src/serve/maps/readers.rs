@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::http::StatusCode;
+use tokio::sync::Semaphore;
 
 use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
 use super::places::Places;
 use super::process::{ReaderCommand, Trouble};
-use super::scan::Found;
+use crate::maps::scan::Found;
 use crate::serve::problem::Problem;
 use crate::serve::room::{Room, Taken};
 
@@ -18,6 +19,8 @@ use crate::serve::room::{Room, Taken};
 const PATIENCE: Duration = Duration::from_secs(20);
 /// Megabytes for all windows and curves that are requested or being sent.
 const ROOM: u32 = 32;
+/// The most files that are sent at a time.
+const MOST_SENT: usize = 32;
 /// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 8 << 20;
 /// The most bytes of a pixel: a real, its status, and its bits.
@@ -31,6 +34,8 @@ pub(in crate::serve) struct Maps {
     pub(super) list: Arc<List>,
     places: Arc<Places>,
     room: Room,
+    /// Files that are sent.
+    pub(super) sending: Arc<Semaphore>,
 }
 
 impl Maps {
@@ -40,7 +45,22 @@ impl Maps {
             list: Arc::new(List::of(folder, command.clone())),
             places: Places::of(command),
             room: Room::of(ROOM),
+            sending: Arc::new(Semaphore::new(MOST_SENT)),
         }
+    }
+
+    /// The state of all files, as a number that changes with it.
+    pub(in crate::serve) async fn fingerprint(&self) -> u64 {
+        self.list.fingerprint().await
+    }
+
+    /// The name of a complete map in the folder itself by the hash of its plan, if there is one.
+    pub(in crate::serve) async fn of_plan(&self, hash: &str) -> Result<Option<String>, Problem> {
+        let found = self.list.of_plan(hash).await;
+        found.ok_or_else(|| {
+            let detail = "the maps of the folder cannot be read in time";
+            Problem::of(StatusCode::SERVICE_UNAVAILABLE, detail)
+        })
     }
 
     /// Takes room for the answer about a window, waiting while others are sent.

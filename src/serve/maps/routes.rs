@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use axum::extract::rejection::QueryRejection;
-use axum::extract::{FromRequestParts, Path, Query, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
-use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use serde_json::Value;
 use utoipa::OpenApi;
@@ -14,12 +12,14 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::described::{CurvesHead, MapCell, MapDescription, MapList, MapTold, WindowHead};
+use super::file;
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::Maps;
-use super::scan::Found;
 use crate::maps::look::finite;
+use crate::maps::scan::Found;
+use crate::serve::asked::{Asked, Named, said};
 use crate::serve::openapi::Encoded;
-use crate::serve::problem::{Denied, Problem, nothing_here};
+use crate::serve::problem::{Denied, Problem};
 
 /// The routes of all addresses below `/api/v1/maps`.
 pub(in crate::serve) fn routes<S>(maps: Arc<Maps>) -> OpenApiRouter<S>
@@ -33,6 +33,7 @@ where
         .routes(routes!(curves))
         .routes(routes!(cell))
         .routes(routes!(sweep))
+        .routes(routes!(file::file))
         .with_state(maps)
 }
 
@@ -60,28 +61,6 @@ enum NoMap {
 }
 
 const ENCODED: &str = "application/octet-stream";
-
-/// The id of a map in an address.
-struct Id(String);
-
-impl<S: Send + Sync> FromRequestParts<S> for Id {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
-        let id = Path::from_request_parts(parts, state).await;
-        let Path(id) = id.map_err(|_| nothing_here())?;
-        Ok(Self(id))
-    }
-}
-
-type Asked<T> = Result<Query<T>, QueryRejection>;
-
-/// The contents of a query.
-fn said<T>(query: Asked<T>) -> Result<T, Problem> {
-    let said = query
-        .map_err(|rejected| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, rejected.body_text()));
-    Ok(said?.0)
-}
 
 async fn found(maps: &Maps, id: &str) -> Result<Found, Problem> {
     let found = maps.list.find(id).await;
@@ -130,7 +109,7 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
 )]
 async fn description(
     State(maps): State<Arc<Maps>>,
-    Id(id): Id,
+    Named(id): Named,
 ) -> Result<axum::Json<MapDescription<Value>>, Problem> {
     let found = found(&maps, &id).await?;
     let frame = maps.ask(&found, &Ask::Description).await?;
@@ -162,7 +141,7 @@ async fn description(
 )]
 async fn window(
     State(maps): State<Arc<Maps>>,
-    Id(id): Id,
+    Named(id): Named,
     query: Asked<WindowQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
@@ -190,7 +169,7 @@ async fn window(
 )]
 async fn curves(
     State(maps): State<Arc<Maps>>,
-    Id(id): Id,
+    Named(id): Named,
     query: Asked<CurvesQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
@@ -214,7 +193,7 @@ async fn curves(
 )]
 async fn cell(
     State(maps): State<Arc<Maps>>,
-    Id(id): Id,
+    Named(id): Named,
     query: Asked<CellQuery>,
 ) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Cell(said(query)?)).await
@@ -233,6 +212,6 @@ async fn cell(
         NoMap,
     ),
 )]
-async fn sweep(State(maps): State<Arc<Maps>>, Id(id): Id) -> Result<Response, Problem> {
+async fn sweep(State(maps): State<Arc<Maps>>, Named(id): Named) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Sweep).await
 }

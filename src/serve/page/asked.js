@@ -6,12 +6,20 @@ import { Newest } from "./newest.js";
 const NO_TOKEN = 401;
 
 export class Asked {
+  /** @type {string | null} */
+  text = null;
+  /** @type {any} */
+  answer = null;
+  /** @type {any} */
+  error = null;
+  /** Whether the server is gone. */
+  lost = false;
+
   /**
    * @param {(text: string, signal: AbortSignal) => Promise<any>} ask
    * @param {(asked: Asked) => void} told that there is an answer, or an error
    */
   constructor(ask, told) {
-    [this.text, this.answer, this.error] = [null, null, null];
     const tried = async (text, signal) => {
       try {
         return { answer: await ask(text, signal) };

@@ -3,6 +3,9 @@
 /** @returns {HTMLElement} */
 export const element = (id) => document.getElementById(id);
 
+/** @returns {HTMLInputElement} */
+export const input = (id) => /** @type {HTMLInputElement} */ (element(id));
+
 /**
  * A new element with properties and children.
  * @param {string} tag

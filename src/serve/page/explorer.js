@@ -10,6 +10,7 @@ import { Live } from "./live.js";
 import { Panel, counted } from "./panel.js";
 import { PlaneView } from "./plane.js";
 import { ZOOM, follow, zoomed } from "./pointing.js";
+import { Queue } from "./queue.js";
 import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
@@ -69,11 +70,31 @@ class Explorer {
       opened: () => this.#mode(),
       look: (texts, about) => this.panel.look(texts, { start: this.state.start, ...about }),
       changed: () => this.#settle(),
+      folder: (folder) => this.queue?.setFolder(folder),
       failed,
     });
+    if (source.jobs) this.#queue(words);
     this.#listen();
     this.#mode();
     if (source.maps) this.saved.begin();
+    this.queue?.begin();
+  }
+
+  #queue(words) {
+    this.queue = new Queue(this.source, {
+      opened: (id) => this.saved.choose(id),
+      maps: () => this.saved.list.look(),
+      lost: (error) => this.#lost(error),
+      words,
+    });
+    element("overnight").addEventListener("click", () => {
+      const { show, x, y } = this.state;
+      try {
+        this.queue.take(this.live.text(this.state), `${show} over ${x.name} and ${y.name}`);
+      } catch (error) {
+        this.failed(error);
+      }
+    });
   }
 
   /** Shows the chart or the map that the state names. */
@@ -88,7 +109,8 @@ class Explorer {
     }
     element("to-live").setAttribute("aria-pressed", String(!map));
     element("origin").textContent = map ? "from the file" : "computed now";
-    element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
+    element("save-toml").title = map ? "The sweep file of this map" : "That of this chart";
+    this.queue?.setLive(!map);
     this.plane.plane = null;
     this.stale.clear();
     if (map) {
@@ -367,6 +389,7 @@ class Explorer {
     // What was asked meanwhile is asked again.
     if (this.state.map) this.saved.look();
     else this.look();
+    this.queue?.again();
   }
 
   #listen() {

@@ -23,8 +23,8 @@ function age(seconds) {
 export class MapList {
   /**
    * @param {object} source see source.js
-   * @param {{chosen: (id: string) => void, listed: (maps: object[]) => void,
-   *   failed: (error: Error) => void}} told
+   * @param {{chosen: (id: string) => void,
+   *   listed: (maps: object[], folder: string) => void, failed: (error: Error) => void}} told
    */
   constructor(source, told) {
     Object.assign(this, { source, told });
@@ -45,7 +45,7 @@ export class MapList {
       element("to-maps").textContent = `Maps (${maps.length})`;
       element("maps-title").textContent = `Maps in ${folder}`;
       this.#tell(maps);
-      this.told.listed(maps);
+      this.told.listed(maps, folder);
     } catch (error) {
       // A folder that was not given is no mistake.
       if (error.status !== 404) this.told.failed(error);

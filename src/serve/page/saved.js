@@ -35,7 +35,7 @@ export class Saved {
    * @param {import("./plane.js").PlaneView} plane
    * @param {import("./stale.js").Stale} stale
    * @param {{shown: Function, opened: Function, look: Function, changed: Function,
-   *   failed: Function}} told
+   *   folder: Function, failed: Function}} told
    */
   constructor(source, state, plane, stale, told_) {
     Object.assign(this, { source, state, plane, stale, told: told_ });
@@ -55,12 +55,11 @@ export class Saved {
     );
     this.slice = new Slice(source, told_.failed);
     this.list = new MapList(source, {
-      chosen: (id) => {
-        this.state.map = { id, at: {} };
-        told_.opened();
-        element("chart-title").focus();
+      chosen: (id) => this.choose(id),
+      listed: (maps, folder) => {
+        told_.folder(folder);
+        this.#listed(maps);
       },
-      listed: (maps) => this.#listed(maps),
       failed: told_.failed,
     });
     this.#listen();
@@ -68,6 +67,13 @@ export class Saved {
 
   begin() {
     return this.list.begin();
+  }
+
+  /** Shows another map. */
+  choose(id) {
+    this.state.map = { id, at: {} };
+    this.told.opened();
+    element("chart-title").focus();
   }
 
   /** A map that has grown is described anew, and one that can be opened again. */

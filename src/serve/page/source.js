@@ -70,11 +70,12 @@ function server() {
     const told = await response.json().catch(() => ({ title: response.statusText }));
     throw new Problem(told, text);
   };
-  const post = async (path, body, signal) => {
-    const headers = { "Content-Type": "application/toml" };
-    const response = fetch(`api/v1/${path}`, { method: "POST", headers, body, signal });
+  const send = async (method, path, kind, body, signal) => {
+    const headers = kind ? { "Content-Type": `application/${kind}` } : {};
+    const response = fetch(`api/v1/${path}`, { method, headers, body, signal });
     return answered(await response, body);
   };
+  const post = (path, body, signal) => send("POST", path, "toml", body, signal);
   // Where the server is busy for a moment, it is asked again; what it computes may be too much.
   const get = async (path, signal) => {
     for (let tries = 1; ; tries++) {
@@ -87,6 +88,12 @@ function server() {
   const decoded = async (response) => decode(await (await response).arrayBuffer());
   const json = async (response) => (await response).json();
   const of = (id, what, query) => `maps/${id}/${what}?${new URLSearchParams(query)}`;
+  const job = (name) => `jobs/${encodeURIComponent(name)}`;
+  const submit = async (toml, options) => {
+    const said = Object.entries(options).filter(([, value]) => value);
+    const response = await post(`jobs?${new URLSearchParams(said)}`, toml);
+    return { job: await response.json(), isNew: response.status === 201 };
+  };
   return {
     kind: "server",
     chart: (toml, signal) => decoded(post("chart", toml, signal)),
@@ -102,6 +109,13 @@ function server() {
     curves: (id, query, signal) => decoded(get(of(id, "curves", query), signal)),
     cell: (id, query, signal) => json(get(of(id, "cell", query), signal)),
     sweepText: async (id, signal) => (await get(`maps/${id}/sweep`, signal)).text(),
+    jobs: (signal) => json(get("jobs", signal)),
+    job: (name, signal) => json(get(job(name), signal)),
+    plan: (toml, timed, signal) => json(post(timed ? "plan?timed=true" : "plan", toml, signal)),
+    submit,
+    changeJob: (name, to) => json(send("PATCH", job(name), "json", JSON.stringify(to))),
+    dropJob: (name, tiles) => send("DELETE", tiles ? `${job(name)}?tiles=true` : job(name)),
+    events: () => new EventSource("api/v1/events"),
   };
 }
 

@@ -281,12 +281,13 @@ pub(super) fn listed(
             paths.push(entry.path());
         }
     }
-    paths.sort();
+    // As plain texts, which are compared faster than paths.
+    paths.sort_unstable_by(|a, b| a.as_os_str().cmp(b.as_os_str()));
     Ok(paths)
 }
 
 /// Makes a folder durably, if it does not exist.
-pub(super) fn make(folder: &Path) -> Result<(), StoreError> {
+pub(crate) fn make(folder: &Path) -> Result<(), StoreError> {
     match fs::create_dir(folder) {
         // The process that made it may have died before it was durable.
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {}

@@ -95,6 +95,12 @@ pub(super) fn length_of_head(head: &[u8]) -> Option<usize> {
     entries.checked_add(HEAD + size_of::<Digest>())
 }
 
+/// The most bytes before the records of a file of a sweep with so many pieces.
+pub(super) fn longest_head(pieces: u64) -> u64 {
+    let entries = pieces.saturating_mul(ENTRY as u64);
+    entries.saturating_add((HEAD + size_of::<Digest>()) as u64)
+}
+
 /// The index of a file's bytes. It does not check the records' own checksums, see [`is_sound`].
 ///
 /// # Errors

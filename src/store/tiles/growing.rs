@@ -8,6 +8,7 @@ use super::super::curve_reader::{MapCurve, curves_of};
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::super::stamp::Stamp;
+use super::done::ShardDone;
 use super::manifest::{self, Manifest};
 use super::reader::TileReader;
 use super::record::Content;
@@ -15,7 +16,7 @@ use super::shards;
 use crate::sweep::cells::boundaries::plane;
 use crate::sweep::described::curves::outer_values;
 use crate::sweep::plan::Plan;
-use crate::sweep::plan::pieces::Piece;
+use crate::sweep::plan::pieces::{Piece, Shard};
 use crate::sweep::plan::tile::place_of;
 
 /// The tiles of a map as chunks of its columns: the fields of the plan, then the status.
@@ -23,7 +24,7 @@ use crate::sweep::plan::tile::place_of;
 pub struct GrowingMap {
     plan: Plan,
     manifest: Manifest,
-    folders: Vec<PathBuf>,
+    folders: Vec<(Shard, PathBuf)>,
     readers: Vec<TileReader>,
     stamps: Vec<Option<Stamp>>,
 }
@@ -44,7 +45,7 @@ impl GrowingMap {
         if present.is_empty() {
             return Ok(None);
         }
-        let folders: Vec<PathBuf> = present.into_iter().map(|(_, path)| path).collect();
+        let folders: Vec<PathBuf> = present.iter().map(|(_, path)| path.clone()).collect();
         let stamps = folders.iter().map(|folder| stamp(folder)).collect();
         let (manifest, plan) = shards::plan(&folders)?;
         if manifest.tile_shape != plan.tiles.tile_shape() {
@@ -61,7 +62,7 @@ impl GrowingMap {
         Ok(Some(Self {
             plan,
             manifest,
-            folders,
+            folders: present,
             readers,
             stamps,
         }))
@@ -74,9 +75,8 @@ impl GrowingMap {
     /// When the system refuses.
     pub(crate) fn refresh(&mut self, map: &Path) -> Result<bool, StoreError> {
         let present = shards::present(map)?;
-        let folders = present.iter().map(|(_, path)| path);
-        let stamps = self.folders.iter().map(|folder| stamp(folder));
-        if !folders.eq(&self.folders) || !stamps.eq(self.stamps.iter().copied()) {
+        let stamps = self.folders.iter().map(|(_, folder)| stamp(folder));
+        if present != self.folders || !stamps.eq(self.stamps.iter().copied()) {
             return Ok(false);
         }
         self.readers.iter_mut().try_for_each(TileReader::add_new)?;
@@ -103,6 +103,29 @@ impl GrowingMap {
         done.dedup();
         let cells = done.iter().map(|&piece| self.plan.cells_of(piece)).sum();
         (done.len() as u64, cells)
+    }
+
+    /// How much of each shard is computed. A piece whose bytes were damaged after they were written
+    /// counts as computed: only [`Survey`](super::Survey) reads them all.
+    #[must_use]
+    pub(crate) fn shards(&self) -> Vec<ShardDone> {
+        let of = |((shard, folder), reader): (&(Shard, PathBuf), &TileReader)| {
+            let mut done = ShardDone::nothing(&self.plan, *shard, folder);
+            reader.done().for_each(|piece| done.add(&self.plan, piece));
+            done
+        };
+        self.folders.iter().zip(&self.readers).map(of).collect()
+    }
+
+    /// Refuses shards of several sweeps.
+    ///
+    /// # Errors
+    /// Where there are such, or the system refuses.
+    pub(crate) fn refuse_mixed(&self) -> Result<(), StoreError> {
+        for (_, folder) in &self.folders {
+            shards::expected_in(folder, &self.manifest)?;
+        }
+        Ok(())
     }
 
     /// How a column is stored; none where there is no such column.

@@ -5,6 +5,7 @@
 //! Each tile file is closed, synced and renamed before the next one is begun, so it outlasts any
 //! end of the run. A file holds the pieces of about two seconds.
 //!
+//! - `done`: how much of a shard is computed
 //! - `folder`: a shard's folder, claimed by the process that fills it
 //! - `format`: the layout of a tile file
 //! - `growing`: the tiles of a map that is still being computed, as chunks of its columns
@@ -13,6 +14,7 @@
 //! - `shards`: the folders of all shards of a map
 //! - `survey`: the contents of all shards, read without claiming them
 
+pub mod done;
 pub(crate) mod folder;
 pub mod format;
 pub(crate) mod growing;

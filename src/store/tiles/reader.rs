@@ -1,6 +1,7 @@
 //! Checks and reads the tile files of one folder, without changing anything.
 
 use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,9 @@ use crate::sweep::plan::pieces::{Piece, Pieces};
 
 /// The most bytes of a tile file.
 const MOST_BYTES: u64 = 4 << 30;
+
+/// Bytes that are read of a file for its head; the heads of most files have less.
+const USUAL_HEAD: u64 = 4 << 10;
 
 /// A tile file that is not as it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -87,23 +91,27 @@ impl Checked {
     }
 }
 
-/// The entries in the head of a tile file; empty where the head is not sound.
-fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
+/// The entries in the head of a tile file; empty where the head is not sound, or has more of them
+/// than there are pieces.
+fn head(path: &Path, layout: &Digest, pieces: Pieces) -> std::io::Result<Vec<Entry>> {
     let mut file = match regular::open(path) {
         Ok(file) => file,
         Err(NotRead::Foreign) => return Ok(Vec::new()),
         Err(other) => return Err(other.into()),
     };
     let found = file.metadata()?;
-    let mut head = vec![0; format::HEAD.min(found.len() as usize)];
+    let mut head = vec![0; found.len().min(USUAL_HEAD) as usize];
     file.read_exact(&mut head)?;
-    let length = format::length_of_head(&head).filter(|&length| length as u64 <= found.len());
+    let most = found.len().min(format::longest_head(pieces.total()));
+    let length = format::length_of_head(&head).filter(|&length| length as u64 <= most);
     let Some(length) = length else {
         return Ok(Vec::new());
     };
-    let begun = head.len();
-    head.resize(length, 0);
-    file.read_exact(&mut head[begun..])?;
+    if let Some(more) = length.checked_sub(head.len()) {
+        let begun = head.len();
+        head.resize(begun + more, 0);
+        file.read_exact(&mut head[begun..])?;
+    }
     let entries = format::index(&head, layout).unwrap_or_default();
     let whole = |entry: &Entry| entry.at.end as u64 <= found.len();
     Ok(entries.into_iter().filter(whole).collect())
@@ -186,12 +194,24 @@ impl TileReader {
         Ok(reader)
     }
 
-    /// Adds new files, by their heads.
+    /// Adds new files, by their heads. Where files have gone, since a run mends damaged ones, all
+    /// are read anew.
     pub(super) fn add_new(&mut self) -> Result<(), StoreError> {
-        let known: HashSet<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
-        let found = listed(&self.path, is_tile_file)?;
-        for file in found.into_iter().filter(|file| !known.contains(file)) {
-            let entries = match head(&file, &self.layout) {
+        let mut found = listed(&self.path, is_tile_file)?;
+        let all = found.len();
+        // As plain texts, which are compared faster than paths.
+        let known: HashSet<&OsStr> = self
+            .files
+            .iter()
+            .map(|file| file.path.as_os_str())
+            .collect();
+        found.retain(|file| !known.contains(file.as_os_str()));
+        if all - found.len() < known.len() {
+            *self = Self::empty(&self.path, self.layout, self.pieces);
+            return self.add_new();
+        }
+        for file in found {
+            let entries = match head(&file, &self.layout, self.pieces) {
                 Ok(entries) => entries,
                 Err(error) if error.kind() == ErrorKind::NotFound => continue,
                 Err(error) => return Err(StoreError::io("read", &file)(error)),

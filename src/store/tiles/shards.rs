@@ -17,11 +17,14 @@ use super::reader::Damaged;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
 
+/// What the name of a map's folder of tiles has behind that of the map.
+pub(crate) const ROOT_ENDING: &str = ".tiles";
+
 /// The folder beside `map` that contains the folders of its shards.
 #[must_use]
 pub fn root(map: &Path) -> PathBuf {
     let mut name = map.file_name().unwrap_or_default().to_owned();
-    name.push(".tiles");
+    name.push(ROOT_ENDING);
     map.with_file_name(name)
 }
 
@@ -151,6 +154,23 @@ fn planned(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
     }
 }
 
+/// The hash of the plan whose tiles stand beside `map`, from the first sound manifest; none where
+/// there are no tiles. No plan is made and no tile file is read.
+///
+/// # Errors
+/// When no manifest is sound, or the system refuses.
+pub(crate) fn plan_hash(map: &Path) -> Result<Option<String>, StoreError> {
+    let mut first = Ok(None);
+    for (_, folder) in present(map)? {
+        match manifest(&folder) {
+            Ok(found) => return Ok(Some(found.plan_hash)),
+            Err(error) if first.is_ok() => first = Err(error),
+            Err(_) => {}
+        }
+    }
+    first
+}
+
 /// Whether tiles of any shard that belong to `asked` stand beside `map`.
 #[must_use]
 pub(crate) fn hold(map: &Path, asked: &Manifest) -> bool {
@@ -168,13 +188,17 @@ pub(crate) fn hold(map: &Path, asked: &Manifest) -> bool {
 /// an unsound one the folder's name says which shard it is.
 ///
 /// # Errors
-/// When the system refuses, or the shard cannot be told.
+/// When its own manifest is of something else, the system refuses, or the shard cannot be told.
 pub(super) fn expected_in(
     folder: &Path,
     expected: &Manifest,
 ) -> Result<(Manifest, bool), StoreError> {
     match manifest(folder) {
-        Ok(found) => Ok((expected.of_shard(&found.shard), true)),
+        Ok(found) => {
+            let expected = expected.of_shard(&found.shard);
+            found.refuse_unlike(&expected, folder)?;
+            Ok((expected, true))
+        }
         Err(StoreError::Manifest { path, why }) => {
             let name = folder.file_name().and_then(|name| shard_of(name.to_str()?));
             let shard = name.ok_or(StoreError::Manifest { path, why })?;

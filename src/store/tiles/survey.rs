@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::error::StoreError;
+use super::done::ShardDone;
 use super::folder::{is_tile_file, listed};
 use super::manifest::{self, Manifest};
 use super::reader::Checked;
@@ -30,18 +31,8 @@ pub struct Survey {
 /// The contents of the tiles of one shard.
 #[derive(Debug)]
 pub struct ShardSurvey {
-    /// Which one.
-    pub shard: Shard,
-    /// Whether a run works on it at this moment.
-    pub running: bool,
-    /// Cells of the shard.
-    pub cells: u64,
-    /// Cells that are computed.
-    pub cells_done: u64,
-    /// Pieces of the shard.
-    pub pieces: u64,
-    /// Pieces that are computed.
-    pub pieces_done: u64,
+    /// How much of it is computed.
+    pub done: ShardDone,
     /// Damaged files; the next run computes their pieces again.
     pub damaged: Vec<PathBuf>,
 }
@@ -95,24 +86,11 @@ impl Survey {
     ) -> Result<(), StoreError> {
         let (expected, sound) = shards::expected_in(path, expected)?;
         let broken = path.join(manifest::NAME);
-        if sound {
-            Manifest::read(&broken)?.refuse_unlike(&expected, path)?;
-        }
-        let total = seen.pieces.total();
-        let places = (0..total).filter(|&place| shard.holds(place));
-        let cells = places
-            .map(|place| self.plan.cells_of(seen.pieces.at(place)))
-            .sum();
         let mut found = ShardSurvey {
-            shard,
-            running: shards::is_running(path),
-            cells,
-            cells_done: 0,
-            pieces: shard.count(total),
-            pieces_done: 0,
+            done: ShardDone::nothing(&self.plan, shard, path),
             damaged: (!sound).then_some(broken).into_iter().collect(),
         };
-        seen.here = vec![false; total as usize];
+        seen.here = vec![false; seen.pieces.total() as usize];
         for file in listed(path, is_tile_file)? {
             self.add_file(&file, &expected, &mut found, seen)?;
         }
@@ -138,10 +116,8 @@ impl Survey {
                 continue;
             };
             let (cells, place) = (self.plan.cells_of(entry.piece), place as usize);
-            let own = found.shard.holds(place as u64);
-            if !std::mem::replace(&mut seen.here[place], true) && own {
-                found.pieces_done += 1;
-                found.cells_done += cells;
+            if !std::mem::replace(&mut seen.here[place], true) {
+                found.done.add(&self.plan, entry.piece);
             }
             if !std::mem::replace(&mut seen.anywhere[place], true) {
                 self.pieces_done += 1;

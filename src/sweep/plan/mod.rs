@@ -176,7 +176,7 @@ impl Plan {
     #[must_use]
     pub fn cells_of(&self, piece: Piece) -> u64 {
         match piece {
-            Piece::Tile(number) => self.tiles.tile(number as usize).cells(),
+            Piece::Tile(number) => self.tiles.cells_of(number),
             Piece::Curves(_) | Piece::Best(_) => 0,
         }
     }

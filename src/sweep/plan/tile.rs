@@ -83,6 +83,19 @@ impl TileGrid {
         Tile { offset, extent }
     }
 
+    /// Number of cells inside the map of the tile with number `number`.
+    #[must_use]
+    pub(super) fn cells_of(&self, number: u64) -> u64 {
+        let (mut cells, mut rest) = (1, number);
+        for (&n, &t) in self.shape.iter().zip(&self.tile_shape).rev() {
+            let along = n.div_ceil(t) as u64;
+            let first = (rest % along) as usize * t;
+            cells *= t.min(n - first) as u64;
+            rest /= along;
+        }
+        cells
+    }
+
     /// The number of the tile that holds a cell.
     #[must_use]
     pub(crate) fn holding(&self, index: &[usize]) -> u64 {
@@ -173,6 +186,7 @@ mod tests {
         let mut seen = vec![0; 5 * 7 * 4];
         for number in 0..grid.len() {
             let tile = grid.tile(number);
+            assert_eq!(grid.cells_of(number as u64), tile.cells());
             assert_eq!(grid.holding(&tile.offset), number as u64);
             for_each_index(&tile.extent, None, |i| {
                 let cell = ((tile.offset[0] + i[0]) * 7 + tile.offset[1] + i[1]) * 4

@@ -20,22 +20,21 @@ const MOST_NAMES: usize = 50_000;
 const MOST_MAPS: usize = 2000;
 /// Extensions of maps.
 const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
-/// How the name of a map's folder of tiles ends.
-const TILES: &str = ".tiles";
 /// Digits of an id.
 const DIGITS: usize = 16;
 
 /// The state of a map's files; it changes whenever one of them does.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Mark {
-    file: Option<Stamp>,
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub(crate) struct Mark {
+    /// The map itself.
+    pub file: Option<Stamp>,
     /// Number of tile files, their bytes, and the time of the last one.
     tiles: Option<(u64, u64, Option<SystemTime>)>,
 }
 
 /// A candidate for a map.
 #[derive(Debug, Clone)]
-pub(super) struct Found {
+pub(crate) struct Found {
     pub id: String,
     /// Its path below the folder.
     pub name: String,
@@ -49,19 +48,19 @@ pub(super) struct Found {
 
 impl Found {
     /// Number of bytes of its files.
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let file = self.mark.file.map_or(0, |stamp| stamp.length);
         file + self.mark.tiles.map_or(0, |(_, bytes, _)| bytes)
     }
 
     /// Time of the last write.
-    pub(super) fn modified(&self) -> Option<SystemTime> {
+    pub(crate) fn modified(&self) -> Option<SystemTime> {
         let tiles = self.mark.tiles.and_then(|(.., modified)| modified);
         tiles.max(self.mark.file.and_then(|stamp| stamp.modified))
     }
 
     /// The state of a map that can be read: complete or not.
-    pub(super) fn state(&self, complete: bool) -> &'static str {
+    pub(crate) fn state(&self, complete: bool) -> &'static str {
         match (self.mark.file, self.running) {
             // Even while another one is being computed.
             (Some(_), _) if complete => "complete",
@@ -74,7 +73,7 @@ impl Found {
 
 /// The candidates below a folder.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Scanned {
+pub(crate) struct Scanned {
     /// Sorted by name.
     pub maps: Vec<Found>,
     /// Folders that were not searched: too deep, or closed to this process.
@@ -93,7 +92,7 @@ struct Search<'a> {
 }
 
 /// The candidates below `root`, an absolute path without links.
-pub(super) fn scan(root: &Path) -> Scanned {
+pub(crate) fn scan(root: &Path) -> Scanned {
     let mut search = Search {
         root,
         found: BTreeMap::new(),
@@ -144,7 +143,9 @@ impl Search<'_> {
             return None;
         }
         if kind.is_dir() {
-            let map = name.to_str().and_then(|name| name.strip_suffix(TILES));
+            let map = name
+                .to_str()
+                .and_then(|name| name.strip_suffix(shards::ROOT_ENDING));
             let Some(map) = map.filter(|map| !map.is_empty()) else {
                 return Some(path);
             };
@@ -179,7 +180,7 @@ impl Search<'_> {
 }
 
 /// The id of a map, from its path below the folder.
-fn id_of(relative: &Path) -> String {
+pub(crate) fn id_of(relative: &Path) -> String {
     let mut hash = Sha256::new();
     hash.update(relative.as_os_str().as_encoded_bytes());
     let mut id = in_hexadecimal(&hash.finalize());

@@ -1,0 +1,70 @@
+//! Unfinished tiles that follow a sweep to its new name, such as that of one that was put first.
+//! A change of a name is one rename, of the sweep file; its tiles keep the name under which they
+//! were begun until a worker starts the sweep.
+
+use std::fs;
+
+use super::folder::Folder;
+use super::name::Name;
+use crate::store::durable::sync;
+use crate::store::tiles::shards;
+use crate::store::{StoreError, lock};
+
+/// Gives a job the tiles of its plan that were begun under another number, if there are such and it
+/// has none. Tiles of a job that is there, or on which a run works, stay where they are.
+///
+/// # Errors
+/// When the system refuses.
+pub(super) fn adopt(folder: &Folder, name: &Name, plan_hash: &str) -> Result<(), StoreError> {
+    let map = folder.map(name);
+    let Some((_, word)) = name.parts() else {
+        return Ok(());
+    };
+    if shards::root(&map).exists() || map.exists() {
+        return Ok(());
+    }
+    for other in folder.names_of_maps()? {
+        let other = other.name;
+        let of_word = other.parts().is_some_and(|(_, its)| its == word) && other != *name;
+        if of_word && is_left(folder, &other, plan_hash)? {
+            return follow(folder, &other, name);
+        }
+    }
+    Ok(())
+}
+
+/// Whether the tiles of a name are of this plan, and of no job that is there.
+fn is_left(folder: &Folder, name: &Name, plan_hash: &str) -> Result<bool, StoreError> {
+    let map = folder.map(name);
+    if folder.find(name).is_some() || map.exists() || lock::is_held(&folder.lock(name)) {
+        return Ok(false);
+    }
+    let found = shards::plan_hash(&map).ok().flatten();
+    let ours = found.as_deref() == Some(plan_hash);
+    let shards = shards::present(&map)?;
+    Ok(ours && !shards.iter().any(|(_, path)| shards::is_running(path)))
+}
+
+/// Renames the tiles of one name to those of another, and then its logs.
+fn follow(folder: &Folder, from: &Name, to: &Name) -> Result<(), StoreError> {
+    let (old, new) = (folder.map(from), folder.map(to));
+    let (old, new) = (shards::root(&old), shards::root(&new));
+    fs::rename(&old, &new).map_err(StoreError::io("rename", &old))?;
+    let behind = |file: &std::ffi::OsStr| {
+        let rest = file
+            .to_str()?
+            .strip_prefix(folder.map(from).file_name()?.to_str()?)?;
+        let is_log = rest.strip_suffix(".log").is_some();
+        is_log.then(|| rest.to_owned())
+    };
+    let entries = fs::read_dir(folder.path()).map_err(StoreError::io("read", folder.path()))?;
+    for entry in entries.flatten() {
+        if let Some(rest) = behind(&entry.file_name()) {
+            let mut log = folder.map(to).into_os_string();
+            log.push(rest);
+            // The tiles are what counts.
+            let _ = fs::rename(entry.path(), log);
+        }
+    }
+    sync(folder.path())
+}
