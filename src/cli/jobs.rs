@@ -1,12 +1,11 @@
 //! `slipmap jobs`: the sweeps of a queue, and changes of them.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::queue::QueueError;
 use crate::queue::change::{Change, change, failed_before, no_such_job};
 use crate::queue::facts::JobFacts;
 use crate::queue::folder::Folder;
@@ -140,20 +139,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 
 /// The job of a name that a user gives.
 fn named(folder: &Folder, name: &str) -> Result<Name, Failure> {
-    Name::given(name).ok_or_else(|| {
-        let last = Path::new(name)
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy();
-        let error = no_such_job(folder, &last);
-        match error {
-            QueueError::NoSuchJob { folder, near, .. } => {
-                let name = name.to_owned();
-                QueueError::NoSuchJob { folder, name, near }.into()
-            }
-            other => other.into(),
-        }
-    })
+    Name::given(name).ok_or_else(|| no_such_job(folder, name).into())
 }
 
 /// Refuses a folder without a queue.

@@ -3,8 +3,10 @@
 //! were begun until a worker starts the sweep.
 
 use std::fs;
+use std::path::Path;
 
 use super::folder::Folder;
+use super::logs::logs;
 use super::name::Name;
 use crate::store::durable::sync;
 use crate::store::tiles::shards;
@@ -47,23 +49,17 @@ fn is_left(folder: &Folder, name: &Name, plan_hash: &str) -> Result<bool, StoreE
 
 /// Renames the tiles of one name to those of another, and then its logs.
 fn follow(folder: &Folder, from: &Name, to: &Name) -> Result<(), StoreError> {
-    let (old, new) = (folder.map(from), folder.map(to));
-    let (old, new) = (shards::root(&old), shards::root(&new));
+    let (map, new_map) = (folder.map(from), folder.map(to));
+    let (old, new) = (shards::root(&map), shards::root(&new_map));
     fs::rename(&old, &new).map_err(StoreError::io("rename", &old))?;
-    let behind = |file: &std::ffi::OsStr| {
-        let rest = file
-            .to_str()?
-            .strip_prefix(folder.map(from).file_name()?.to_str()?)?;
-        let is_log = rest.strip_suffix(".log").is_some();
-        is_log.then(|| rest.to_owned())
-    };
-    let entries = fs::read_dir(folder.path()).map_err(StoreError::io("read", folder.path()))?;
-    for entry in entries.flatten() {
-        if let Some(rest) = behind(&entry.file_name()) {
-            let mut log = folder.map(to).into_os_string();
-            log.push(rest);
+    for log in logs(&map) {
+        let behind = log.strip_prefix(folder.path()).ok().and_then(Path::to_str);
+        let behind = behind.and_then(|file| file.strip_prefix(map.file_name()?.to_str()?));
+        if let Some(behind) = behind {
+            let mut renamed = new_map.clone().into_os_string();
+            renamed.push(behind);
             // The tiles are what counts.
-            let _ = fs::rename(entry.path(), log);
+            let _ = fs::rename(&log, renamed);
         }
     }
     sync(folder.path())

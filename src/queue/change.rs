@@ -97,21 +97,22 @@ pub(crate) fn failed_before(folder: &Folder, age: Duration) -> Result<Vec<Name>,
     Ok(names)
 }
 
-/// Says that no job has this name, and which one is like it.
+/// Says that no job has this name, and which one is like it. Of a path the last part counts.
 pub(crate) fn no_such_job(folder: &Folder, name: &str) -> QueueError {
     let all = Place::ALL
         .iter()
         .flat_map(|place| folder.names(*place).unwrap_or_default());
     let all: Vec<String> = all.map(|name| name.to_string()).collect();
-    let name = name.to_owned();
+    let last = name.rsplit('/').next().unwrap_or(name);
+    let last = Name::given(last).map_or_else(String::new, |name| name.to_string());
     // A number or a word alone is as good, where it is of one job.
     let parts =
-        |job: &&String| job.starts_with(&format!("{name}-")) || job.ends_with(&format!("-{name}"));
+        |job: &&String| job.starts_with(&format!("{last}-")) || job.ends_with(&format!("-{last}"));
     let near = all.iter().find(parts).cloned();
-    let near = near.or_else(|| nearest(&name, all.iter().map(String::as_str)).map(str::to_owned));
+    let near = near.or_else(|| nearest(&last, all.iter().map(String::as_str)).map(str::to_owned));
     QueueError::NoSuchJob {
         folder: folder.path().to_owned(),
-        name,
+        name: name.to_owned(),
         near,
     }
 }

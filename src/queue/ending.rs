@@ -7,21 +7,21 @@ use super::QueueError;
 use super::attempt::End;
 use super::event::Event;
 use super::folder::Place;
+use super::logs::last_lines;
 use super::name::Name;
 use super::note::{JobLock, Note};
 use super::states::State;
 use super::work::{MOST_TRIES, Worker};
 use crate::report::log;
+use crate::store::StoreError;
 use crate::store::durable::{rename_synced, sync, write_synced};
 use crate::store::stamp::Stamp;
-use crate::store::{StoreError, regular};
 use crate::sweep::Shard;
 
 /// How long a sweep is put off that another run works on.
 const FOR_OTHERS: Duration = Duration::from_secs(2);
-/// Lines of a log that are told of a sweep that failed, and the most bytes of a log read for them.
+/// Lines of a log that are told of a sweep that failed.
 const LAST_LINES: usize = 10;
-const MOST_OF_LOG: u64 = 64 << 10;
 
 impl Worker<'_> {
     /// The run of a job has ended, which was begun with a file of this stamp.
@@ -31,18 +31,16 @@ impl Worker<'_> {
         mut lock: JobLock,
         end: End,
     ) -> Result<(), QueueError> {
-        if let End::Done(said) = &end {
-            return self.done((name, stamp), lock, said);
-        }
-        // It was held or dropped, or another file has its name: that one is a new job.
-        if Stamp::of(&self.folder.file(Place::Queue, name)) != stamp {
-            (self.tell)(Some(name), &Event::TakenOut);
-            return Ok(lock.remove()?);
-        }
+        let is_there = Stamp::of(&self.folder.file(Place::Queue, name)) == stamp;
         let mut note = lock.note();
         note.array.clear();
         match end {
-            End::Done(_) => Ok(()),
+            End::Done(said) => self.done((name, stamp), lock, &said),
+            // It was held or dropped, or another file has its name: that one is a new job.
+            _ if !is_there => {
+                (self.tell)(Some(name), &Event::TakenOut);
+                Ok(lock.remove()?)
+            }
             End::BadInput(mut why) => {
                 if why.contains("--fresh") {
                     let folder = self.folder.path().display();
@@ -178,13 +176,9 @@ impl Worker<'_> {
     /// The last lines of the log of a job's map.
     fn end_of_log(&self, name: &Name) -> String {
         let path = log::path(&self.folder.map(name), Shard::WHOLE);
-        let log = regular::end(&path, MOST_OF_LOG).unwrap_or_default();
-        let log = String::from_utf8_lossy(&log);
-        let lines: Vec<&str> = log.lines().collect();
-        let last = &lines[lines.len().saturating_sub(LAST_LINES)..];
-        match last {
-            [] => String::new(),
-            last => format!("\nthe end of {}:\n{}\n", path.display(), last.join("\n")),
+        match last_lines(&path, LAST_LINES) {
+            last if last.is_empty() => last,
+            last => format!("\nthe end of {}:\n{last}\n", path.display()),
         }
     }
 

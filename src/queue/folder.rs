@@ -23,7 +23,7 @@ pub(crate) enum Place {
 }
 
 impl Place {
-    /// All of them.
+    /// The folders of files of jobs.
     pub(crate) const ALL: [Self; 3] = [Self::Queue, Self::Held, Self::Failed];
 
     /// The name of the folder.

@@ -20,6 +20,7 @@
 //! - `event`: what a worker tells of itself
 //! - `facts`: what programs are told of a job
 //! - `folder`: the folders of a queue, and the names in them
+//! - `logs`: logs beside a map: which files they are, and how they end
 //! - `name`: names of jobs
 //! - `note`: the lock of a job, and the note in it
 //! - `progress`: the progress of a map from the heads of its tile files and its logs
@@ -46,6 +47,7 @@ mod ending;
 pub(crate) mod event;
 pub(crate) mod facts;
 pub(crate) mod folder;
+pub(crate) mod logs;
 pub(crate) mod name;
 pub(crate) mod note;
 pub(crate) mod progress;

@@ -40,7 +40,7 @@ impl Name {
     }
 
     /// The name that a user gives; with the extension, or as the name of the map, it is the same.
-    /// None where it would lead out of the folders of the queue.
+    /// There is none where it would lead out of the folders of the queue.
     pub(crate) fn given(text: &str) -> Option<Self> {
         let stem = text.strip_suffix(ENDING).or(text.strip_suffix(".h5"));
         let stem = stem.unwrap_or(text);

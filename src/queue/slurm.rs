@@ -12,9 +12,10 @@ use sha2::{Digest, Sha256};
 
 use super::attempt::End;
 use super::folder::{Folder, Place};
+use super::logs::{last_lines, logs, newest};
 use super::name::Name;
 use crate::maps::maker;
-use crate::store::{StoreError, regular};
+use crate::store::StoreError;
 use crate::sweep::Plan;
 use crate::text::in_hexadecimal;
 
@@ -22,8 +23,7 @@ use crate::text::in_hexadecimal;
 const SCRIPT: &str = include_str!("shard.sbatch");
 /// Digits in the name of an array that tell its plan and its folder.
 const DIGITS: usize = 16;
-/// The most bytes and lines that are told of what a task said.
-const MOST_SAID: u64 = 16 << 10;
+/// The most lines that are told of what a task said.
 const LAST_LINES: usize = 30;
 
 /// How sweeps are handed to Slurm.
@@ -106,40 +106,15 @@ impl Files {
         ))
     }
 
-    /// The files of what its tasks said.
-    fn logs(&self) -> Vec<PathBuf> {
-        let begins = self.said.file_name().unwrap_or_default().as_encoded_bytes();
-        let is_log = |path: &PathBuf| {
-            let name = path.file_name().unwrap_or_default().as_encoded_bytes();
-            name.starts_with(begins) && name.ends_with(b".log")
-        };
-        let entries = self
-            .said
-            .parent()
-            .and_then(|folder| fs::read_dir(folder).ok());
-        let paths = entries
-            .into_iter()
-            .flatten()
-            .flatten()
-            .map(|entry| entry.path());
-        paths.filter(is_log).collect()
-    }
-
     /// The end of what the task said that said something last.
     fn last_said(&self) -> String {
-        let newest = self
-            .logs()
-            .into_iter()
-            .max_by_key(|path| path.metadata().and_then(|found| found.modified()).ok());
-        let said = newest.map(|path| regular::end(&path, MOST_SAID).unwrap_or_default());
-        let said = String::from_utf8_lossy(&said.unwrap_or_default()).into_owned();
-        let lines: Vec<&str> = said.lines().collect();
-        lines[lines.len().saturating_sub(LAST_LINES)..].join("\n")
+        let newest = newest(logs(&self.said));
+        newest.map_or_else(String::new, |log| last_lines(&log, LAST_LINES))
     }
 
     /// Removes what an array leaves beside its map.
     fn clear(&self) {
-        for path in self.logs().iter().chain([&self.refused]) {
+        for path in logs(&self.said).iter().chain([&self.refused]) {
             // What cannot be removed is in nobody's way.
             let _ = fs::remove_file(path);
         }

@@ -79,6 +79,20 @@ pub(crate) struct Job {
     pub progress: Option<Progress>,
 }
 
+impl Job {
+    /// A job whose map is complete; or a map that no job has made.
+    pub(crate) fn done(name: Name) -> Self {
+        Self {
+            name,
+            state: State::Done,
+            place: None,
+            note: Note::default(),
+            why: None,
+            progress: None,
+        }
+    }
+}
+
 /// What has been read of the tiles of jobs, so that another look is cheap.
 #[derive(Debug, Default)]
 pub(crate) struct Looks(HashMap<Name, Watched>);
@@ -97,7 +111,8 @@ impl Looks {
     }
 }
 
-/// All jobs: those of the queue in their order, then held, failed and done ones. No map is opened.
+/// The jobs of a folder: those of the queue in their order, then held, failed and done ones. No
+/// map is opened.
 ///
 /// # Errors
 /// When the system refuses.
@@ -116,13 +131,14 @@ pub(crate) fn jobs(folder: &Folder, looks: &mut Looks) -> Result<Vec<Job>, Store
     for map in folder.names_of_maps()? {
         let is_job = map.is_map && map.name.parts().is_some() && !files.contains(&map.name);
         if is_job {
-            jobs.push(told(folder, looks, map.name, State::Done, None));
+            jobs.push(Job::done(map.name));
         }
     }
     looks.0.retain(|name, _| files.contains(name));
     Ok(jobs)
 }
 
+/// A job whose file is in one of the folders.
 fn told(folder: &Folder, looks: &mut Looks, name: Name, state: State, place: Option<usize>) -> Job {
     let note = match place.is_some() || state == State::Running {
         true => Note::beside(&folder.lock(&name)),
@@ -133,10 +149,7 @@ fn told(folder: &Folder, looks: &mut Looks, name: Name, state: State, place: Opt
         State::Waiting => Some(note.why.clone()).filter(|why| !why.is_empty()),
         _ => None,
     };
-    let progress = match state {
-        State::Done => None,
-        _ => looks.progress(folder, &name),
-    };
+    let progress = looks.progress(folder, &name);
     Job {
         name,
         state,
@@ -148,7 +161,7 @@ fn told(folder: &Folder, looks: &mut Looks, name: Name, state: State, place: Opt
 }
 
 /// What the file beside a failed sweep says.
-pub(crate) fn why_failed(folder: &Folder, name: &Name) -> String {
+fn why_failed(folder: &Folder, name: &Name) -> String {
     let said = regular::head(&folder.said(name), MOST_OF_WHY).unwrap_or_default();
     String::from_utf8_lossy(&said).trim_end().to_owned()
 }

@@ -67,10 +67,10 @@ impl<'a> Intake<'a> {
         Self::open_within(folder, PATIENCE)
     }
 
-    /// The same, with less patience.
+    /// Opens the queue as [`Intake::open`] does, with this patience.
     ///
     /// # Errors
-    /// As for [`Intake::open`].
+    /// When another process keeps it for longer, or the system refuses.
     pub(crate) fn open_within(folder: &'a Folder, patience: Duration) -> Result<Self, QueueError> {
         folder.make()?;
         let path = folder.place(Place::Queue).join(LOCK);

@@ -161,7 +161,7 @@ impl<'a> Worker<'a> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    pub(super) fn rest(&self, time: Duration) {
+    fn rest(&self, time: Duration) {
         let begun = Instant::now();
         while begun.elapsed() < time && !self.stopped() {
             std::thread::sleep(MOMENT.min(time));

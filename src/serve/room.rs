@@ -54,6 +54,18 @@ impl Room {
     }
 }
 
+/// A place among so many, once one is free; `full` says what is too much where none is for long.
+pub(super) async fn place(
+    places: &Arc<Semaphore>,
+    full: &str,
+) -> Result<OwnedSemaphorePermit, Problem> {
+    let place = Arc::clone(places).acquire_owned();
+    match tokio::time::timeout(LONGEST, place).await {
+        Ok(Ok(place)) => Ok(place),
+        _ => Err(Problem::of(StatusCode::SERVICE_UNAVAILABLE, full)),
+    }
+}
+
 /// The units of room that `bytes` take.
 fn units(bytes: u64) -> u64 {
     match bytes {

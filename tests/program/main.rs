@@ -16,6 +16,9 @@ mod map;
 mod processes;
 #[path = "../common/program.rs"]
 mod program;
+#[cfg(target_os = "linux")]
+#[path = "../common/queue_files.rs"]
+mod queue_files;
 
 mod actuators;
 mod cli;

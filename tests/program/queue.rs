@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use crate::map::datasets;
 use crate::processes::{children, is_there, until};
 use crate::program::{Folder, err, expect, json, out};
+use crate::queue_files::left;
 
 /// A sweep that takes no time.
 const SMALL: &str = "
@@ -64,15 +65,6 @@ fn expect_jobs(folder: &Folder, expected: &[(&str, &str)]) {
         .map(|(state, name)| (&**state, &**name))
         .collect();
     assert_eq!(found, expected);
-}
-
-/// What is in the queue besides what every queue has.
-fn left(folder: &Folder) -> Vec<String> {
-    let entries = fs::read_dir(folder.path().join("q/queue")).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    names
-        .filter(|name| ![".lock", ".workers"].contains(&&**name))
-        .collect()
 }
 
 fn work(folder: &Folder) -> std::process::Output {

@@ -16,6 +16,9 @@ mod processes;
 #[path = "../common/program.rs"]
 mod program;
 #[cfg(target_os = "linux")]
+#[path = "../common/queue_files.rs"]
+mod queue_files;
+#[cfg(target_os = "linux")]
 #[path = "../common/server.rs"]
 mod server;
 

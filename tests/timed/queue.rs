@@ -16,6 +16,7 @@ use crate::chance::{Chance, asked};
 use crate::interposer::interposed;
 use crate::map::datasets;
 use crate::program::{Folder, Started, ends_within, err, expect, json, out, signal};
+use crate::queue_files::left;
 
 /// Sweeps of some pieces, a second or so of work each in all.
 fn sweep(number: usize) -> String {
@@ -313,15 +314,6 @@ fn calls(folder: &Folder, args: &[&str]) -> u64 {
 
 const SUBMIT: [&str; 4] = ["submit", "s.toml", "--to", "q"];
 const WORK: [&str; 6] = ["work", "q", "--until-empty", "--threads", "1", "-q"];
-
-/// What is in the queue besides what every queue has.
-fn left(folder: &Folder) -> Vec<String> {
-    let entries = fs::read_dir(folder.path().join("q/queue")).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    names
-        .filter(|name| ![".lock", ".workers"].contains(&&**name))
-        .collect()
-}
 
 fn with_sweep() -> Folder {
     Folder::with(&[("s.toml", &sweep(0))])

@@ -8,7 +8,7 @@ use tokio::runtime::Handle;
 
 use super::Jobs;
 use super::described::{JobChange, JobEntry, Wanted};
-use super::now::{blocking, done};
+use super::now::blocking;
 use super::posted::Posted;
 use crate::model::stop::Stop;
 use crate::queue::QueueError;
@@ -16,6 +16,7 @@ use crate::queue::change::{Change, change};
 use crate::queue::folder::{Folder, Place};
 use crate::queue::name::Name;
 use crate::queue::room::Needs;
+use crate::queue::states::Job;
 use crate::queue::submit::{Intake, Options};
 use crate::report::numbers::bytes;
 use crate::serve::problem::Problem;
@@ -63,7 +64,7 @@ impl Jobs {
         let entry = match now.job(&submitted.name.to_string()) {
             Ok(job) => JobEntry::of(job),
             // A map that no job has made, or a job that was taken out at once.
-            Err(_) => JobEntry::of(&done(submitted.name)),
+            Err(_) => JobEntry::of(&Job::done(submitted.name)),
         };
         Ok((entry, submitted.is_new))
     }

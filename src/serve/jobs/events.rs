@@ -71,9 +71,7 @@ impl Events {
         let (jobs, maps) = (jobs.parse().ok()?, maps.parse().ok()?);
         Some(Revisions { jobs, maps })
     }
-}
 
-impl Events {
     /// A stream for a client that has got the event of the id `last`. Where nobody looks yet,
     /// `watch` begins to.
     pub(super) fn stream(&self, last: Option<&str>, watch: impl FnOnce()) -> Result<Body, Problem> {

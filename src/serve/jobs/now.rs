@@ -1,19 +1,18 @@
 //! The queue as it is: looked at for all who ask at the same time.
 
-use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 
 use axum::http::StatusCode;
 
 use super::described::{JobEntry, JobTold};
 use crate::queue::QueueError;
 use crate::queue::folder::Folder;
-use crate::queue::states::{Job, Looks, State, jobs};
+use crate::queue::logs::{end, logs, newest};
+use crate::queue::states::{Job, Looks, jobs};
 use crate::serve::problem::Problem;
-use crate::store::regular;
 
 /// The most bytes of the end of a log that are told.
 const MOST_OF_LOG: u64 = 4 << 10;
@@ -94,9 +93,8 @@ impl Looking {
 
     /// A job with the end of its log.
     pub(super) async fn told(&self, job: &Job) -> Result<JobTold, Problem> {
-        let (folder, entry) = (self.folder.clone(), JobEntry::of(job));
-        let map = folder.map(&job.name);
-        let log = blocking(move || Ok(end_of_log(&folder, &map))).await?;
+        let (map, entry) = (self.folder.map(&job.name), JobEntry::of(job));
+        let log = blocking(move || Ok(end_of_log(&map))).await?;
         Ok(JobTold { entry, log })
     }
 }
@@ -113,44 +111,6 @@ pub(super) async fn blocking<T: Send + 'static>(
 }
 
 /// The last lines of the log of a map that was written last: shards have logs of their own.
-fn end_of_log(folder: &Folder, map: &Path) -> String {
-    let stem = map.file_name().unwrap_or_default().as_encoded_bytes();
-    let is_log = |file: &OsStr| {
-        let rest = file.as_encoded_bytes().strip_prefix(stem);
-        rest.is_some_and(|rest| rest.starts_with(b".") && rest.ends_with(b".log"))
-    };
-    let entries = std::fs::read_dir(folder.path()).into_iter().flatten();
-    let logs = entries
-        .flatten()
-        .filter(|entry| is_log(&entry.file_name()))
-        .map(|entry| entry.path());
-    let written = |log: &std::path::PathBuf| {
-        let told = log.metadata().and_then(|told| told.modified());
-        told.unwrap_or(SystemTime::UNIX_EPOCH)
-    };
-    let Some(log) = logs.max_by_key(written) else {
-        return String::new();
-    };
-    let end = regular::end(&log, MOST_OF_LOG).unwrap_or_default();
-    let whole_lines = match end.len() as u64 {
-        // The first line may be cut off.
-        MOST_OF_LOG => end
-            .iter()
-            .position(|&byte| byte == b'\n')
-            .map_or(0, |at| at + 1),
-        _ => 0,
-    };
-    String::from_utf8_lossy(&end[whole_lines..]).into_owned()
-}
-
-/// What is told of a map that no job of the queue has made.
-pub(super) fn done(name: crate::queue::name::Name) -> Job {
-    Job {
-        name,
-        state: State::Done,
-        place: None,
-        note: crate::queue::note::Note::default(),
-        why: None,
-        progress: None,
-    }
+fn end_of_log(map: &Path) -> String {
+    newest(logs(map)).map_or_else(String::new, |log| end(&log, MOST_OF_LOG))
 }

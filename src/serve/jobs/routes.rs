@@ -1,7 +1,6 @@
 //! The addresses of requests about jobs.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::Json;
 use axum::body::Bytes;
@@ -10,7 +9,6 @@ use axum::http::header::{CONTENT_TYPE, HeaderMap, LOCATION};
 use axum::http::{HeaderName, StatusCode};
 use axum::response::{IntoResponse, Response};
 use tokio::sync::OwnedSemaphorePermit;
-use tokio::time::timeout;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -23,14 +21,13 @@ use crate::queue::submit::Options;
 use crate::serve::access::Role;
 use crate::serve::asked::{Asked, Named, json, said, text};
 use crate::serve::problem::{Denied, Problem, Refused};
+use crate::serve::room::place;
 use crate::serve::served::Served;
 use crate::serve::work::Pace;
 
 /// A place among the sweeps that are dealt with.
 type Place = OwnedSemaphorePermit;
 
-/// How long is waited for such a place.
-const PATIENCE: Duration = Duration::from_secs(10);
 /// About the bytes of a sweep in the list.
 const BYTES_OF_A_JOB: u64 = 512;
 /// The id of the last event that a client of a stream got.
@@ -66,11 +63,7 @@ impl Shared {
     /// Reads the text of a sweep, and takes its place among those that are dealt with.
     async fn posted(&self, headers: &HeaderMap, body: &Bytes) -> Result<(Posted, Place), Problem> {
         let text = text(headers, body)?;
-        let place = timeout(PATIENCE, Arc::clone(&self.jobs.reading).acquire_owned()).await;
-        let Ok(Ok(place)) = place else {
-            let detail = "too many sweeps are dealt with already";
-            return Err(Problem::of(StatusCode::SERVICE_UNAVAILABLE, detail));
-        };
+        let place = place(&self.jobs.reading, "too many sweeps are dealt with already").await?;
         let turn = self.served.work.turn(Pace::Quick).await?;
         Ok((turn.run(move |_| Posted::read(&text)).await?, place))
     }
@@ -133,12 +126,12 @@ async fn submit(
         again: false,
     };
     let (entry, is_new) = shared.jobs.put(posted, name, options, keep_free).await?;
-    let (status, name) = match is_new {
-        true => (StatusCode::CREATED, &entry.facts.name),
-        false => (StatusCode::OK, &entry.facts.name),
+    let status = match is_new {
+        true => StatusCode::CREATED,
+        false => StatusCode::OK,
     };
     // Relative, so that it holds behind a proxy too. Names of files may have any letters.
-    let location = is_new.then(|| [(LOCATION, format!("jobs/{name}"))]);
+    let location = is_new.then(|| [(LOCATION, format!("jobs/{}", entry.facts.name))]);
     Ok((status, location, Json(entry)).into_response())
 }
 

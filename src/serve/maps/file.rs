@@ -6,7 +6,7 @@ use std::io::{Error, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use axum::body::Bytes;
 use axum::extract::State;
@@ -16,13 +16,13 @@ use axum::http::header::{
 };
 use axum::http::{Method, StatusCode};
 use axum::response::{IntoResponse, Response};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
-use tokio::time::timeout;
+use tokio::sync::OwnedSemaphorePermit;
 
-use super::readers::Maps;
+use super::readers::{Maps, no_map};
 use crate::maps::scan::Found;
 use crate::serve::asked::Named;
 use crate::serve::problem::{Denied, Problem};
+use crate::serve::room::place;
 use crate::serve::streamed::{Part, streamed};
 use crate::store::regular;
 use crate::store::stamp::Stamp;
@@ -31,8 +31,6 @@ use crate::store::stamp::Stamp;
 const KIND: &str = "application/x-hdf5";
 /// Bytes that are read at a time.
 const PIECE: u64 = 1 << 16;
-/// How long is waited for others that are sent files.
-const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Why a file is not sent.
 #[derive(utoipa::IntoResponses)]
@@ -72,10 +70,7 @@ pub(super) async fn file(
     method: Method,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (found, complete) = maps.list.complete(&id).await.ok_or_else(|| {
-        let detail = "there is no map of this id";
-        Problem::of(StatusCode::NOT_FOUND, detail)
-    })?;
+    let (found, complete) = maps.list.complete(&id).await.ok_or_else(no_map)?;
     let complete = complete.ok_or_else(|| {
         let detail = "the map has not been looked at yet";
         Problem::of(StatusCode::SERVICE_UNAVAILABLE, detail)
@@ -84,7 +79,7 @@ pub(super) async fn file(
         let detail = "the map is not complete, or cannot be read";
         return Err(Problem::of(StatusCode::CONFLICT, detail));
     }
-    let place = place(&maps.sending).await?;
+    let place = place(&maps.sending, "too many files are sent already").await?;
     let (opened, stamp) = open(&found).await?;
     let (length, tag) = (stamp.length, tag(&stamp));
     let asked = match applies(&headers, &tag) {
@@ -118,17 +113,6 @@ pub(super) async fn file(
         told.extend(HeaderValue::from_str(&part).map(|part| (CONTENT_RANGE, part)));
     }
     Ok(response)
-}
-
-/// A place among the files that are sent.
-async fn place(sending: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, Problem> {
-    match timeout(PATIENCE, Arc::clone(sending).acquire_owned()).await {
-        Ok(Ok(place)) => Ok(place),
-        _ => Err(Problem::of(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "too many files are sent already",
-        )),
-    }
 }
 
 /// Opens the file of a map, if it is still the one that was found.

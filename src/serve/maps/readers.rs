@@ -119,6 +119,11 @@ pub(super) fn refused(frame: &Frame) -> Refused {
     serde_json::from_slice(&frame.bytes).unwrap_or_else(|_| Refused::damaged("it cannot be read"))
 }
 
+/// The answer about a map that is not in the list.
+pub(super) fn no_map() -> Problem {
+    Problem::of(StatusCode::NOT_FOUND, "there is no map of this id")
+}
+
 fn damaged(why: &str) -> Problem {
     Problem::of(
         StatusCode::BAD_GATEWAY,

@@ -14,7 +14,7 @@ use utoipa_axum::routes;
 use super::described::{CurvesHead, MapCell, MapDescription, MapList, MapTold, WindowHead};
 use super::file;
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
-use super::readers::Maps;
+use super::readers::{Maps, no_map};
 use crate::maps::look::finite;
 use crate::maps::scan::Found;
 use crate::serve::asked::{Asked, Named, said};
@@ -64,7 +64,7 @@ const ENCODED: &str = "application/octet-stream";
 
 async fn found(maps: &Maps, id: &str) -> Result<Found, Problem> {
     let found = maps.list.find(id).await;
-    found.ok_or_else(|| Problem::of(StatusCode::NOT_FOUND, "there is no map of this id"))
+    found.ok_or_else(no_map)
 }
 
 fn answered(frame: Frame) -> Response {
