@@ -114,43 +114,67 @@ pub(super) fn after_shard(
     signals: &Signals,
 ) -> Result<(), Failure> {
     open_files::as_many_as_allowed();
-    loop {
-        if maker::is_complete(map, Some(&plan.hash()))? {
-            return nothing_to_do(map, "", plan.spec.picture.into(), signals);
-        }
-        let present = shards::present(map)?;
-        let missing = missing_of(map, of)?;
-        if missing > 0 && !present.is_empty() {
-            let missing = counted(missing, "shard");
-            let map = map.display();
-            return say::result(format_args!("{map}: {missing} of {of} not complete yet"));
-        }
-        let folders: Vec<PathBuf> = present.into_iter().map(|(_, path)| path).collect();
-        let asked = Merge {
-            folders: &folders,
-            map,
-            missing: Missing::Refuse,
-            replace_complete: false,
-            remove_beside: Some(map),
-        };
-        match assembled(plan, &asked, map, signals) {
+    let is_complete = || maker::is_complete(map, Some(&plan.hash()));
+    while !is_complete()? {
+        match merged(plan, map, of, signals) {
             Ok(assembled) => {
                 tell(map, plan, &assembled)?;
                 show(map, plan.spec.picture.into(), signals);
                 return Ok(());
             }
             // Another process merges them, or is still looking whether it should.
-            Err(StoreError::Locked { .. }) => std::thread::sleep(FOR_OTHERS),
-            Err(error) => return Err(failure(error, map, signals)),
+            Err(Unmerged::Store(StoreError::Locked { .. })) => std::thread::sleep(FOR_OTHERS),
+            // Another process has merged them meanwhile, and removes them.
+            Err(_) if is_complete()? => {}
+            Err(Unmerged::Waits { missing }) => {
+                let missing = counted(missing, "shard");
+                let map = map.display();
+                return say::result(format_args!("{map}: {missing} of {of} not complete yet"));
+            }
+            Err(Unmerged::Store(error)) => return Err(failure(error, map, signals)),
         }
         if signals.stop.load(std::sync::atomic::Ordering::Relaxed) {
             return Err(failure(StoreError::Stopped, map, signals));
         }
     }
+    nothing_to_do(map, "", plan.spec.picture.into(), signals)
+}
+
+/// Why the shards of a map were not merged.
+enum Unmerged {
+    /// So many of them are not complete.
+    Waits {
+        missing: u64,
+    },
+    Store(StoreError),
+}
+
+impl From<StoreError> for Unmerged {
+    fn from(error: StoreError) -> Self {
+        Self::Store(error)
+    }
+}
+
+/// Merges the `of` shards of a map if all are complete, and removes them.
+fn merged(plan: &Plan, map: &Path, of: u64, signals: &Signals) -> Result<Assembled, Unmerged> {
+    let missing = missing_of(map, of)?;
+    if missing > 0 {
+        return Err(Unmerged::Waits { missing });
+    }
+    let present = shards::present(map)?;
+    let folders: Vec<PathBuf> = present.into_iter().map(|(_, path)| path).collect();
+    let asked = Merge {
+        folders: &folders,
+        map,
+        missing: Missing::Refuse,
+        replace_complete: false,
+        remove_beside: Some(map),
+    };
+    Ok(assembled(plan, &asked, map, signals)?)
 }
 
 /// How many of the `of` shards of a map are not complete.
-fn missing_of(map: &Path, of: u64) -> Result<u64, Failure> {
+fn missing_of(map: &Path, of: u64) -> Result<u64, StoreError> {
     let Some(tiles) = GrowingMap::of(map)? else {
         return Ok(of);
     };
