@@ -24,7 +24,7 @@ pub(super) fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapF
     let opened = || signals.or_end(message, || MapFile::open(path));
     let held = path.exists().then(opened).transpose()?;
     let present = match held.as_ref().is_none_or(MapFile::is_partial) {
-        true => shards::present(path).unwrap_or_default(),
+        true => shards::begun(path).unwrap_or_default(),
         false => Vec::new(),
     };
     if present.is_empty() {

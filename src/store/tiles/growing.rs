@@ -41,7 +41,7 @@ impl GrowingMap {
     /// When no manifest is sound, the tile shape is not that of this program, or the system
     /// refuses.
     pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
-        let present = shards::present(map)?;
+        let present = shards::begun(map)?;
         if present.is_empty() {
             return Ok(None);
         }
@@ -74,7 +74,7 @@ impl GrowingMap {
     /// # Errors
     /// When the system refuses.
     pub(crate) fn refresh(&mut self, map: &Path) -> Result<bool, StoreError> {
-        let present = shards::present(map)?;
+        let present = shards::begun(map)?;
         let stamps = self.folders.iter().map(|(_, folder)| stamp(folder));
         if present != self.folders || !stamps.eq(self.stamps.iter().copied()) {
             return Ok(false);

@@ -101,6 +101,16 @@ pub fn present(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     Ok(shards)
 }
 
+/// The shards of `map` that have a manifest. One that a run has only just begun has none yet.
+///
+/// # Errors
+/// As [`present`].
+pub(crate) fn begun(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
+    let mut shards = present(map)?;
+    shards.retain(|(_, path)| path.join(manifest::NAME).exists());
+    Ok(shards)
+}
+
 /// Every folder of a shard of `map`.
 fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     let root = root(map);
@@ -161,7 +171,7 @@ fn planned(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
 /// When no manifest is sound, or the system refuses.
 pub(crate) fn plan_hash(map: &Path) -> Result<Option<String>, StoreError> {
     let mut first = Ok(None);
-    for (_, folder) in present(map)? {
+    for (_, folder) in begun(map)? {
         match manifest(&folder) {
             Ok(found) => return Ok(Some(found.plan_hash)),
             Err(error) if first.is_ok() => first = Err(error),

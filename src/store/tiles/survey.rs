@@ -49,10 +49,10 @@ impl Survey {
     /// Looks at the tiles beside `map`; none where there are none.
     ///
     /// # Errors
-    /// When a manifest is damaged or missing, shards belong to different sweeps, or the system
+    /// When a manifest is damaged, shards belong to different sweeps, or the system
     /// refuses.
     pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
-        let present = shards::present(map)?;
+        let present = shards::begun(map)?;
         if present.is_empty() {
             return Ok(None);
         }
