@@ -1,5 +1,7 @@
 //! What requests carry: texts, queries, and names in addresses.
 
+use std::error::Error;
+
 use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{FromRequestParts, Path, Query};
@@ -27,8 +29,16 @@ pub(super) type Asked<T> = Result<Query<T>, QueryRejection>;
 
 /// The contents of a query.
 pub(super) fn said<T>(query: Asked<T>) -> Result<T, Problem> {
-    let said = query
-        .map_err(|rejected| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, rejected.body_text()));
+    let said = query.map_err(|rejected| {
+        // What its source says, without the names of a library.
+        let why = rejected
+            .source()
+            .map_or_else(|| rejected.body_text(), ToString::to_string);
+        Problem::of(
+            StatusCode::UNPROCESSABLE_ENTITY,
+            format!("the query: {why}"),
+        )
+    });
     Ok(said?.0)
 }
 
