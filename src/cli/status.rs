@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::linear::status::FLAGS;
+use crate::queue::facts::ShardFacts;
 use crate::queue::progress::{Progress, ShardProgress};
 use crate::report::numbers::{grouped, prefixed, seconds};
 use crate::store::tiles::Survey;
@@ -73,39 +74,24 @@ struct StatusAnswer {
     shards: Vec<ShardAnswer>,
 }
 
-/// How far a shard of a map is.
+/// How far a shard of a map is, and its files.
 #[derive(Serialize, ToSchema)]
 struct ShardAnswer {
-    /// Which of how many: `1/4`.
-    shard: String,
-    running: bool,
-    cells: u64,
-    cells_done: u64,
+    #[serde(flatten)]
+    facts: ShardFacts,
     /// Tiles, planes of curves and of best settings.
     pieces: u64,
     pieces_done: u64,
     damaged_files: u64,
-    /// Of the run that works on it; null where none does.
-    #[schema(required)]
-    cells_per_second: Option<f64>,
-    /// Until it is done; null where that is not known.
-    #[schema(required)]
-    seconds_left: Option<f64>,
 }
 
 impl ShardAnswer {
     fn of((shard, damaged_files): (&ShardProgress, u64)) -> Self {
-        let done = &shard.done;
         Self {
-            shard: done.shard.to_string(),
-            running: done.running,
-            cells: done.cells,
-            cells_done: done.cells_done,
-            pieces: done.pieces,
-            pieces_done: done.pieces_done,
+            facts: ShardFacts::of(shard),
+            pieces: shard.done.pieces,
+            pieces_done: shard.done.pieces_done,
             damaged_files,
-            cells_per_second: shard.cells_per_second,
-            seconds_left: shard.seconds_left(),
         }
     }
 }

@@ -1,11 +1,11 @@
-//! What programs are told of a job, by the command line and by the server alike.
+//! What programs are told of a job and of a shard, by the command line and by the server alike.
 
 use std::path::Path;
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::progress::Progress;
+use super::progress::{Progress, ShardProgress};
 use super::states::{Job, State};
 
 /// A sweep of a queue.
@@ -58,6 +58,40 @@ impl JobFacts {
             host: (job.state == State::Running).then(|| job.note.host.clone()),
             tries: job.note.tries,
             why: job.why.clone(),
+        }
+    }
+}
+
+/// How far a shard of a map is.
+#[derive(Debug, Serialize, ToSchema)]
+pub(crate) struct ShardFacts {
+    /// Which of how many: `1/4`.
+    pub shard: String,
+    /// Whether a run works on it.
+    pub running: bool,
+    /// Its cells.
+    pub cells: u64,
+    /// How many of them are computed.
+    pub cells_done: u64,
+    /// Of the run that works on it; null where none does.
+    #[schema(required)]
+    pub cells_per_second: Option<f64>,
+    /// Until it is done; null where that is not known.
+    #[schema(required)]
+    pub seconds_left: Option<f64>,
+}
+
+impl ShardFacts {
+    /// The facts of a shard.
+    pub(crate) fn of(shard: &ShardProgress) -> Self {
+        let done = &shard.done;
+        Self {
+            shard: done.shard.to_string(),
+            running: done.running,
+            cells: done.cells,
+            cells_done: done.cells_done,
+            cells_per_second: shard.cells_per_second,
+            seconds_left: shard.seconds_left(),
         }
     }
 }

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::maps::scan::id_of;
-use crate::queue::facts::JobFacts;
-use crate::queue::progress::ShardProgress;
+use crate::queue::facts::{JobFacts, ShardFacts};
 use crate::queue::states::{Job, State};
 
 /// The sweeps of the folder.
@@ -31,26 +30,7 @@ pub(super) struct JobEntry {
     #[schema(required)]
     pub map_id: Option<String>,
     /// How far its shards are; none where nothing is computed yet, or the map is complete.
-    pub shards: Vec<JobShard>,
-}
-
-/// How far a shard is.
-#[derive(Debug, Serialize, ToSchema)]
-pub(super) struct JobShard {
-    /// Which one, I/N.
-    pub shard: String,
-    /// Whether a run works on it.
-    pub running: bool,
-    /// Its cells.
-    pub cells: u64,
-    /// How many of them are computed.
-    pub cells_done: u64,
-    /// Of the run that works on it; null where none does.
-    #[schema(required)]
-    pub cells_per_second: Option<f64>,
-    /// Until it is done; null where that is not known.
-    #[schema(required)]
-    pub seconds_left: Option<f64>,
+    pub shards: Vec<ShardFacts>,
 }
 
 /// A sweep of the folder, with its log.
@@ -142,26 +122,12 @@ impl JobEntry {
         let progress = job.progress.as_ref();
         let begun = job.state == State::Done || progress.is_some();
         let shards = progress.map_or_else(Vec::new, |progress| {
-            progress.shards.iter().map(JobShard::of).collect()
+            progress.shards.iter().map(ShardFacts::of).collect()
         });
         Self {
             facts: JobFacts::of(job, map),
             map_id: begun.then(|| id_of(map)),
             shards,
-        }
-    }
-}
-
-impl JobShard {
-    fn of(shard: &ShardProgress) -> Self {
-        let done = &shard.done;
-        Self {
-            shard: done.shard.to_string(),
-            running: done.running,
-            cells: done.cells,
-            cells_done: done.cells_done,
-            cells_per_second: shard.cells_per_second,
-            seconds_left: shard.seconds_left(),
         }
     }
 }
