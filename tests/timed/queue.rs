@@ -217,6 +217,8 @@ fn a_queue_outlasts_kills_of_all_that_work_on_it() {
         worker.signal("-KILL");
         worker.wait();
     }
+    // Their runs save what they have and end; until then nobody else may take what they work on.
+    crate::processes::until(60, "all runs end", || runs(&path).is_empty());
     let folder = &story.folder;
     for name in fs::read_dir(path.join("q/held")).unwrap() {
         let name = name.unwrap().file_name().into_string().unwrap();
