@@ -12,11 +12,12 @@ use crate::queue::folder::Folder;
 use crate::queue::name::Name;
 use crate::queue::progress::Progress;
 use crate::queue::states::{Job, Looks, State, jobs};
-use crate::report::numbers::{grouped, prefixed, seconds};
+use crate::report::numbers::grouped;
 
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::say::{self, Rows};
+use super::status::speed;
 
 /// The most failed and the most done jobs that are listed for people.
 const MOST_OVER: usize = 20;
@@ -244,12 +245,9 @@ fn said(folder: &Folder, job: &Job) -> String {
 /// How far a map is.
 pub(super) fn how_far(progress: &Progress) -> String {
     let (percent, cells) = (progress.percent(), grouped(progress.cells));
-    let mut text = format!("{percent:.1} % of {cells} cells");
-    if let Some(rate) = progress.cells_per_second() {
-        let left = progress
-            .seconds_left()
-            .map_or("unknown".to_owned(), seconds);
-        text += &format!(", {} cells/s, {left} left", prefixed(rate));
+    let cells = format!("{percent:.1} % of {cells} cells");
+    match speed(progress) {
+        Some(speed) => format!("{cells}, {speed}"),
+        None => cells,
     }
-    text
 }

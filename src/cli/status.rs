@@ -47,6 +47,14 @@ fn main_of_one(map: &Path, json: bool) -> Result<(), Failure> {
     status.print(map)
 }
 
+/// The rate of a map that is computed, and how long it takes; none where no run works on it.
+pub(super) fn speed(progress: &Progress) -> Option<String> {
+    let rate = progress.cells_per_second()?;
+    let left = progress.seconds_left();
+    let left = left.map_or("unknown".to_owned(), seconds);
+    Some(format!("{} cells/s, {left} left", prefixed(rate)))
+}
+
 /// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
     AnswerSchema::of("status")
@@ -153,11 +161,8 @@ impl Status {
         let (done, cells) = (grouped(progress.cells_done), grouped(progress.cells));
         let done = format!("{done} of {cells} are done ({share:.1} %)");
         rows.row("cells", done)?;
-        if let Some(rate) = progress.cells_per_second() {
-            let left = progress
-                .seconds_left()
-                .map_or("unknown".to_owned(), seconds);
-            rows.row("rate", format!("{} cells/s, {left} left", prefixed(rate)))?;
+        if let Some(speed) = speed(progress) {
+            rows.row("rate", speed)?;
         }
         let flagged = FLAGS.iter().map(|(_, name)| *name);
         let flagged = flagged.zip(self.statuses.flagged);

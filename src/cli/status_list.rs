@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::maps::scan::scan;
 use crate::queue::progress::{Progress, Watched};
-use crate::report::numbers::{counted, grouped, prefixed, seconds};
+use crate::report::numbers::{counted, grouped};
 use crate::store::tiles::shards;
 use crate::store::{MapFile, StoreError};
 use serde::Serialize;
@@ -15,6 +15,7 @@ use utoipa::ToSchema;
 use super::failure::Failure;
 use super::json::{self, Inputs};
 use super::say::{self, visible_line};
+use super::status::speed;
 
 /// Maps that are looked at a time.
 const AT_A_TIME: usize = 8;
@@ -242,11 +243,8 @@ fn columns(looked: &Looked) -> [String; 4] {
     };
     let (done, cells) = (grouped(progress.cells_done), grouped(progress.cells));
     let cells = format!("{done} of {cells} ({:.1} %)", progress.percent());
-    let rate = progress.cells_per_second().map_or(String::new(), |rate| {
-        let left = progress.seconds_left().map_or("unknown".into(), seconds);
-        format!("{} cells/s, {left} left", prefixed(rate))
-    });
-    [map, progress.state().into(), cells, rate]
+    let speed = speed(progress).unwrap_or_default();
+    [map, progress.state().into(), cells, speed]
 }
 
 fn print(maps: &[Looked]) -> Result<(), Failure> {

@@ -43,8 +43,8 @@ fn is_left(folder: &Folder, name: &Name, plan_hash: &str) -> Result<bool, StoreE
     }
     let found = shards::plan_hash(&map).ok().flatten();
     let ours = found.as_deref() == Some(plan_hash);
-    let shards = shards::present(&map)?;
-    Ok(ours && !shards.iter().any(|(_, path)| shards::is_running(path)))
+    let running = shards::any_is_running(&map)?;
+    Ok(ours && !running)
 }
 
 /// Renames the tiles of one name to those of another, and then its logs.

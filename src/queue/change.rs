@@ -1,8 +1,6 @@
 //! Holds, releases and drops jobs, and puts them first: each is one rename or one removal, also
 //! while a worker has the job. The worker sees it within a second, and ends the run.
 
-use std::fs;
-use std::io::ErrorKind;
 use std::time::{Duration, SystemTime};
 
 use super::QueueError;
@@ -11,6 +9,7 @@ use super::name::Name;
 use super::note::JobLock;
 use super::states::State;
 use super::submit::{Intake, first_name};
+use crate::store::durable::remove_if_there;
 use crate::store::tiles::shards;
 use crate::store::{StoreError, lock};
 use crate::text::nearest::nearest;
@@ -66,7 +65,7 @@ pub(crate) fn change(folder: &Folder, name: &Name, what: Change) -> Result<Name,
                 shards::clear(&folder.map(name))?;
             }
             let released = shifted(folder, name, place, Place::Queue)?;
-            forget_why(folder, name)?;
+            remove_if_there(&folder.said(name))?;
             Ok(released)
         }
         (Change::First, Place::Queue) => match State::of(folder, place, name) {
@@ -146,17 +145,6 @@ fn forget(folder: &Folder, name: &Name) -> Result<(), QueueError> {
     }
 }
 
-/// Removes the text that says why a job failed, if there is one.
-fn forget_why(folder: &Folder, name: &Name) -> Result<(), StoreError> {
-    let said = folder.said(name);
-    match fs::remove_file(&said) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(StoreError::io("remove", &said)(error))
-        }
-        _ => Ok(()),
-    }
-}
-
 fn drop_job(folder: &Folder, name: &Name, place: Place, tiles: bool) -> Result<Name, QueueError> {
     let running = place == Place::Queue && State::of(folder, place, name) == State::Running;
     let works = running || lock::is_held(&folder.lock(name));
@@ -172,7 +160,7 @@ fn drop_job(folder: &Folder, name: &Name, place: Place, tiles: bool) -> Result<N
     if !running {
         forget(folder, name)?;
     }
-    forget_why(folder, name)?;
+    remove_if_there(&folder.said(name))?;
     if tiles {
         shards::clear(&folder.map(name))?;
     }

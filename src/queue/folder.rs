@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::QueueError;
 use super::name::Name;
 use crate::store::StoreError;
-use crate::store::durable::sync;
+use crate::store::durable::{remove_if_there, sync};
 use crate::store::lock;
 use crate::store::tiles::folder::make;
 
@@ -179,14 +179,11 @@ impl Folder {
     /// # Errors
     /// When the system refuses.
     pub(crate) fn remove(&self, place: Place, name: &Name) -> Result<bool, StoreError> {
-        let path = self.file(place, name);
-        match fs::remove_file(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
-            removed => {
-                removed.map_err(StoreError::io("remove", &path))?;
-                sync(&self.place(place)).map(|()| true)
-            }
+        let removed = remove_if_there(&self.file(place, name))?;
+        if removed {
+            sync(&self.place(place))?;
         }
+        Ok(removed)
     }
 }
 

@@ -18,7 +18,7 @@
 //! - `course`: what computes a job: a process of this machine, or an array of Slurm
 //! - `ending`: how a job ends, and what becomes of it
 //! - `event`: what a worker tells of itself
-//! - `facts`: what programs are told of a job
+//! - `facts`: what programs are told of a job and of a shard
 //! - `folder`: the folders of a queue, and the names in them
 //! - `logs`: logs beside a map: which files they are, and how they end
 //! - `name`: names of jobs

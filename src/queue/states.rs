@@ -48,18 +48,14 @@ impl State {
         match place {
             Place::Queue if lock::is_held(&folder.lock(name)) => Self::Running,
             // By an array of Slurm, which goes on without a worker, or by a run by hand.
-            Place::Queue if is_computed(folder, name) => Self::Running,
+            Place::Queue if shards::any_is_running(&folder.map(name)).unwrap_or(false) => {
+                Self::Running
+            }
             Place::Queue => Self::Waiting,
             Place::Held => Self::Held,
             Place::Failed => Self::Failed,
         }
     }
-}
-
-/// Whether a run works on some shard of a job's map.
-fn is_computed(folder: &Folder, name: &Name) -> bool {
-    let present = shards::present(&folder.map(name)).unwrap_or_default();
-    present.iter().any(|(_, path)| shards::is_running(path))
 }
 
 /// A job, as its files tell it.

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use super::name::{Name, word};
 use super::settled::mark_whole;
 use super::states::State;
 use crate::setting::SweepSpec;
-use crate::store::durable::{sync, write_synced};
+use crate::store::durable::{remove_if_there, sync, write_synced};
 use crate::store::{MapFile, StoreError, lock, regular};
 use crate::sweep::Plan;
 use crate::sweep::described::schema::root;
@@ -34,7 +34,7 @@ pub(crate) struct Options {
     pub first: bool,
     /// It does not begin until it is released.
     pub hold: bool,
-    /// As a new job, though the same plan is there already.
+    /// It becomes a new job, though the same plan is there already.
     pub again: bool,
 }
 
@@ -83,7 +83,7 @@ impl<'a> Intake<'a> {
                     _lock: file,
                 };
                 // Left by a process that died: this one has the lock.
-                remove(&intake.part())?;
+                remove_if_there(&intake.part())?;
                 return Ok(intake);
             }
             if begun.elapsed() > patience {
@@ -252,14 +252,5 @@ fn link(part: &Path, path: &Path, text: &str) -> Result<(), StoreError> {
         mark_whole(out.get_ref())
     })?;
     let linked = fs::hard_link(part, path).map_err(StoreError::io("link to", path));
-    remove(part).and(linked)
-}
-
-fn remove(part: &Path) -> Result<(), StoreError> {
-    match fs::remove_file(part) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(StoreError::io("remove", part)(error))
-        }
-        _ => Ok(()),
-    }
+    remove_if_there(part).and(linked)
 }

@@ -28,7 +28,7 @@ pub(super) enum Hosts {
 /// What the holder of a token may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// All that the server does.
+    /// Ask for everything that the server does.
     Any,
     /// Only look.
     Look,

@@ -29,6 +29,19 @@ pub(crate) fn write_synced(
     })
 }
 
+/// Removes a file; false if it is not there.
+///
+/// # Errors
+/// When the system refuses.
+pub(crate) fn remove_if_there(path: &Path) -> Result<bool, StoreError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        removed => removed
+            .map(|()| true)
+            .map_err(StoreError::io("remove", path)),
+    }
+}
+
 /// Makes a file or a folder durable.
 pub(crate) fn sync(path: &Path) -> Result<(), StoreError> {
     let synced = File::open(path).and_then(|file| file.sync_all());

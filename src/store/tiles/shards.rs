@@ -224,6 +224,15 @@ pub(crate) fn is_running(folder: &Path) -> bool {
     folder::is_claimed(folder)
 }
 
+/// Whether a run works on some shard of `map`.
+///
+/// # Errors
+/// As [`present`].
+pub(crate) fn any_is_running(map: &Path) -> Result<bool, StoreError> {
+    let shards = present(map)?;
+    Ok(shards.iter().any(|(_, path)| is_running(path)))
+}
+
 /// The manifest of a shard's folder.
 ///
 /// # Errors
