@@ -55,10 +55,10 @@ impl Sample {
         self.sum() / self.values.len().max(1) as f64
     }
 
-    /// What all pieces come to.
+    /// What all pieces come to; to the last digit the sum, where all were measured.
     #[must_use]
     pub fn total(&self) -> f64 {
-        self.mean() * self.of as f64
+        self.sum() * (self.of as f64 / self.values.len().max(1) as f64)
     }
 
     /// Twice the standard error of the total.
@@ -203,6 +203,13 @@ mod tests {
         seen.sort_unstable();
         assert_eq!(seen, (0..9).collect::<Vec<_>>());
         assert_eq!((all.total(), all.spread()), (9.0, 0.0));
+        for of in 1..100 {
+            let all = Sample {
+                values: vec![0.1; of],
+                of,
+            };
+            assert_eq!(all.total(), all.sum(), "{of}");
+        }
         let stop = Stop::when(&Arc::new(AtomicBool::new(true)));
         assert!(Sample::take(9, ENOUGH, &stop, |_| 1.0).values.is_empty());
     }

@@ -27,6 +27,8 @@ mod overnight;
 #[cfg(target_os = "linux")]
 mod queue;
 mod serve_beside;
+#[cfg(target_os = "linux")]
+mod serve_busy;
 mod shared_v0;
 mod stops;
 
