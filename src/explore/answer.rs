@@ -7,7 +7,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::best::{Recommended, Searched};
+use super::best_answer::BestInPlane;
 use super::chart::{self, Chart};
+use super::given_setting::GivenSetting;
 use super::known::{Known, KnownFormula};
 use super::law::LawCurve;
 use super::motion::{self, Followed};
@@ -16,11 +19,12 @@ use super::problem::Problem;
 use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
+use crate::answers::best::default_ranges;
 use crate::model::stop::Stop;
-use crate::setting::CaseSpec;
 use crate::setting::command::{point_command, vc_command};
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::table_file::Inlined;
+use crate::setting::{CaseSpec, SweepSpec};
 use crate::sweep::Plan;
 use crate::sweep::plan::memory;
 
@@ -36,10 +40,14 @@ pub enum Request {
     Point,
     /// The critical velocity at a point, by the protocol `follow`.
     CriticalVelocity,
+    /// The best settings in the plane of a sweep.
+    Best,
     /// The motion of a case.
     Motion,
     /// A friction law as a curve.
     Law,
+    /// What a file says of a setting.
+    Setting,
     /// The parameters of a friction law that is a formula.
     Formula,
     /// All parameters, laws and fields; its text is empty.
@@ -48,12 +56,14 @@ pub enum Request {
 
 impl Request {
     /// The requests that are answered.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Chart,
         Self::Point,
         Self::CriticalVelocity,
+        Self::Best,
         Self::Motion,
         Self::Law,
+        Self::Setting,
         Self::Formula,
         Self::Parameters,
     ];
@@ -65,8 +75,10 @@ impl Request {
             Self::Chart => "chart",
             Self::Point => "point",
             Self::CriticalVelocity => "vc",
+            Self::Best => "best",
             Self::Motion => "motion",
             Self::Law => "law",
+            Self::Setting => "setting",
             Self::Formula => "formula",
             Self::Parameters => "parameters",
         }
@@ -128,10 +140,14 @@ pub enum Asked {
     Point(PointSpec),
     /// [`Request::CriticalVelocity`].
     CriticalVelocity(PointSpec),
+    /// [`Request::Best`].
+    Best(Box<Searched>),
     /// [`Request::Motion`].
     Motion(Box<CaseSpec>, motion::Limits),
     /// [`Request::Law`], with what is told of its points.
     Law(PointSpec, Vec<String>),
+    /// [`Request::Setting`].
+    Setting(GivenSetting),
     /// [`Request::Formula`].
     Formula(KnownFormula),
     /// [`Request::Parameters`].
@@ -162,8 +178,13 @@ impl Asked {
             Request::Chart => Self::Chart(Chart::plan(text, limits.chart)?),
             Request::Point => Self::Point(point(PointOf::Sliding)?),
             Request::CriticalVelocity => Self::CriticalVelocity(point(PointOf::CriticalVelocity)?),
+            Request::Best => {
+                let spec = SweepSpec::read(text, limits.chart.points)?;
+                Self::Best(Box::new(Searched::in_plane(&spec)?))
+            }
             Request::Motion => Self::Motion(Box::new(text.parse()?), limits.motion),
             Request::Law => Self::Law(point(PointOf::Law)?, remarks.clone()),
+            Request::Setting => Self::Setting(GivenSetting::read(text, limits.chart.points)?),
             Request::Formula => Self::Formula(KnownFormula::read(text)?),
             Request::Parameters => Self::Parameters,
         })
@@ -177,17 +198,26 @@ impl Asked {
             Self::Chart(plan) => chart::bytes(plan),
             Self::CriticalVelocity(point) => memory::of_critical_velocity(&point.setting),
             Self::Motion(case, limits) => memory::of_motion(&case.setting) + limits.bytes(),
-            Self::Point(_) | Self::Law(..) | Self::Formula(_) | Self::Parameters => 0,
+            Self::Point(_)
+            | Self::Best(_)
+            | Self::Law(..)
+            | Self::Setting(_)
+            | Self::Formula(_)
+            | Self::Parameters => 0,
         }
     }
 
-    /// Whether it may take many seconds: what follows motions does.
+    /// Whether it may take many seconds: what searches or follows motions does.
     #[must_use]
     pub fn is_slow(&self) -> bool {
         match self {
             Self::Chart(plan) => chart::is_slow(plan),
-            Self::CriticalVelocity(_) | Self::Motion(..) => true,
-            Self::Point(_) | Self::Law(..) | Self::Formula(_) | Self::Parameters => false,
+            Self::CriticalVelocity(_) | Self::Best(_) | Self::Motion(..) => true,
+            Self::Point(_)
+            | Self::Law(..)
+            | Self::Setting(_)
+            | Self::Formula(_)
+            | Self::Parameters => false,
         }
     }
 
@@ -234,6 +264,15 @@ impl Asked {
                     answer,
                 })
             }
+            Self::Best(searched) => {
+                let stop = Stop::when(stop);
+                let usual = default_ranges(&searched.setting, &searched.of)?;
+                let found = Recommended::of(Searched::clone(searched), &stop)?;
+                if stop.is_set() {
+                    return Err(Problem::stopped());
+                }
+                json(&BestInPlane::of(&found, usual))
+            }
             Self::Motion(case, limits) => {
                 let followed = Followed::of(case, *limits, &Stop::when(stop))?;
                 Ok(motion_bytes::encoded(&followed)?)
@@ -242,6 +281,7 @@ impl Asked {
                 remarks: remarks.clone(),
                 ..LawCurve::of(point)?
             }),
+            Self::Setting(setting) => json(setting),
             Self::Formula(formula) => json(formula),
             Self::Parameters => json(&Known::all()),
         }
@@ -287,10 +327,12 @@ mod tests {
         let vc = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");
         let motion =
             format!("{vc}[start]\nx_dot0 = 0.3\n").replace("[fixed]", "[fixed]\nv0 = 0.35");
+        let best = "[axes]\nalpha_v = [-1, 0]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.3\n".to_owned();
         let chart = "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.3\n".to_owned();
         for (request, text) in [
             (Request::CriticalVelocity, vc),
             (Request::Motion, motion),
+            (Request::Best, best),
             (Request::Chart, chart),
         ] {
             let asked = |stopped| {

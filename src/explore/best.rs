@@ -11,13 +11,14 @@ use crate::answers::best::{BestSettings, Ranges, RobustSetting, best_settings};
 use crate::linear::best::SearchedGain;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::setting::axis::Axis;
 use crate::setting::best_plane::searched_gain;
 use crate::setting::no_answer::NoAnswer;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::Protocol;
 use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::units::Units;
-use crate::setting::{Parameter, Setting};
+use crate::setting::{Parameter, Setting, SweepSpec};
 use crate::text::SpecError;
 
 /// How many roots of the best setting of a system are told. The margins of the block need one.
@@ -70,6 +71,57 @@ pub struct Searched {
     pub ranges: Ranges,
     /// What the recommended setting is to stand.
     pub robust: Option<Spread>,
+}
+
+/// The part of them by which gain, delay and μ′ may be off at the robust setting of a plane.
+const OFF: f64 = 0.05;
+
+impl Searched {
+    /// The search in the plane of a sweep of two axes, one of them the delay: within their ends,
+    /// with the robust setting of the block.
+    ///
+    /// # Errors
+    /// When the axes are others, or nothing is searched along one of them.
+    pub fn in_plane(spec: &SweepSpec) -> Result<Self, Problem> {
+        let is_tau = |axis: &Axis| axis.parameter == Parameter::Tau;
+        let (tau, other) = match &*spec.axes {
+            [other, tau] if is_tau(tau) => (tau, other),
+            [tau, other] if is_tau(tau) => (tau, other),
+            _ => {
+                return Err(no_plane(
+                    "the best setting is searched over a gain and the delay",
+                ));
+            }
+        };
+        let of = other.parameter.clone();
+        let of_block = spec.fixed.system().is_none();
+        if of_block && of.known().and_then(searched_gain).is_none() {
+            let (name, gains) = (of.name(), "alpha_v or alpha_n");
+            return Err(no_plane(&format!(
+                "{name} is not searched, but {gains} and tau"
+            )));
+        }
+        let ends = |axis: &Axis| {
+            let finite = axis.values.iter().copied();
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            })
+        };
+        Ok(Self {
+            setting: spec.fixed.clone(),
+            units: spec.units.clone(),
+            ranges: Ranges {
+                gain: ends(other),
+                tau: ends(tau),
+            },
+            of,
+            robust: of_block.then_some(Spread::Part(OFF)),
+        })
+    }
+}
+
+fn no_plane(why: &str) -> Problem {
+    Problem::new(Why::Unprocessable, why)
 }
 
 /// The best settings, with all about the recommended one.

@@ -21,6 +21,41 @@ pub enum BestSetting {
     System(Box<SystemBest>),
 }
 
+/// What a search in a plane found.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct BestInPlane {
+    #[serde(flatten)]
+    #[cfg_attr(feature = "serve", schema(value_type = BestAnswer))]
+    found: BestSetting,
+    /// Where is searched if nobody says where.
+    usual: UsualRanges,
+}
+
+impl BestInPlane {
+    /// The answer for what was found in a plane of which these ranges are the usual ones.
+    #[must_use]
+    pub fn of(told: &Recommended, usual: Ranges) -> Self {
+        let Ranges { gain, tau } = usual;
+        Self {
+            found: BestSetting::of(told),
+            usual: UsualRanges {
+                gain: gain.into(),
+                tau: tau.into(),
+            },
+        }
+    }
+}
+
+/// The ranges of a search where none are given.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct UsualRanges {
+    /// Of the gain or, of a system, of what is searched beside the delay.
+    gain: [f64; 2],
+    tau: [f64; 2],
+}
+
 /// What a search of the block found. Infinite numbers are written as null.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]

@@ -14,6 +14,7 @@
 //!   it is to stand; [`best_answer`]: the same as plain data
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
+//! - [`given_setting`]: what a file says of a setting
 //! - [`known`]: all parameters, friction laws and fields
 //! - [`mod@answer`]: all of these by the names of requests; [`problem`]: the reply where there is
 //!   no answer
@@ -32,6 +33,7 @@ pub mod best_answer;
 pub mod chart;
 pub mod chart_bytes;
 pub mod encoded;
+pub mod given_setting;
 pub mod known;
 pub mod law;
 pub mod margin_kind;

@@ -13,6 +13,8 @@ use super::problem::{Denied, Problem, Refused};
 use super::served::Served;
 use super::work::Pace;
 use crate::explore::answer::WithCommand;
+use crate::explore::best_answer::BestInPlane;
+use crate::explore::given_setting::GivenSetting;
 use crate::explore::known::{Known, KnownFormula};
 use crate::explore::law::LawCurve;
 use crate::explore::point::BlockPoint;
@@ -25,8 +27,10 @@ pub(super) fn routes() -> OpenApiRouter<Served> {
         .routes(routes!(chart))
         .routes(routes!(point))
         .routes(routes!(vc))
+        .routes(routes!(best))
         .routes(routes!(motion))
         .routes(routes!(law))
+        .routes(routes!(setting))
         .routes(routes!(formula))
         .routes(routes!(parameters))
 }
@@ -39,10 +43,13 @@ mod examples {
     pub(super) const POINT: &str = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
     pub(super) const VC: &str = "[fixed]\nalpha_v = -0.33\ntau = 4.15\n\n[friction]\n\
         law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    pub(super) const BEST: &str = "[axes]\nalpha_v = { from = -1.0, to = 0.2, points = 2 }\n\
+        tau = { from = 0.0, to = 12.0, points = 2 }\n\n[fixed]\nmu_prime = -0.3\n";
     pub(super) const MOTION: &str = "switch_on = 70.0\n\n[fixed]\nv0 = 0.35\n\
         alpha_v = -0.33\ntau = 4.15\n\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n\
         v_s = 0.5\n\n[start]\nx_dot0 = 0.3535\n";
     pub(super) const LAW: &str = "[friction]\nlaw = \"stribeck\"\nmu0 = 0.4\nv_s = 0.5\n";
+    pub(super) const SETTING: &str = POINT;
     pub(super) const FORMULA: &str = "[friction]\nlaw = \"formula\"\nmu_k = \"mu0 + sigma*v\"\n";
 }
 
@@ -121,6 +128,15 @@ of_text! {
 }
 
 of_text! {
+    /// The best settings in a plane
+    ///
+    /// The text is a sweep file with two axes, a gain (of a system: any parameter) and the delay:
+    /// the search is within their ends.
+    fn best: "/api/v1/best", Best, BEST =>
+    description = "What a search found", body = BestInPlane
+}
+
+of_text! {
     /// The motion of a case
     ///
     /// The text is a case file. Of more than 20,000 samples every second one is left out until they
@@ -136,6 +152,14 @@ of_text! {
     /// The text has the table `[friction]`, and may have v0 in `[fixed]`, and `[units]`.
     fn law: "/api/v1/law", Law, LAW =>
     description = "The law", body = LawCurve
+}
+
+of_text! {
+    /// What a file says of a setting
+    ///
+    /// The text is a sweep file, a case file or a setting. It names no other files.
+    fn setting: "/api/v1/setting", Setting, SETTING =>
+    description = "What it says", body = GivenSetting
 }
 
 of_text! {
