@@ -13,7 +13,7 @@ import {
   slipmap,
 } from "./support.mjs";
 
-const SIZE = { width: 1280, height: 1180 };
+const SIZE = { width: 1440, height: 900 };
 
 const folder = newFolder();
 const sweep = join(newFolder(), "planes.toml");

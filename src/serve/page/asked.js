@@ -5,6 +5,9 @@ import { Newest } from "./newest.js";
 /** The status of an answer to who does not have the token. */
 const NO_TOKEN = 401;
 
+/** What stands for an answer that was not waited for. */
+export const stopped = () => Object.assign(new Error("stopped"), { stopped: true });
+
 export class Asked {
   /** @type {string | null} */
   text = null;
@@ -20,6 +23,7 @@ export class Asked {
    * @param {(asked: Asked) => void} told that there is an answer, or an error
    */
   constructor(ask, told) {
+    this.told = told;
     const tried = async (text, signal) => {
       try {
         return { answer: await ask(text, signal) };
@@ -41,11 +45,27 @@ export class Asked {
     return this.text !== null && !this.answer && !this.error;
   }
 
+  /** Nobody waits for the answer any more. */
+  stop() {
+    if (!this.pending) return;
+    this.requests.stop();
+    this.error = stopped();
+    this.told(this);
+  }
+
+  /** Asks about the same text anew. */
+  again() {
+    const { text } = this;
+    this.want(null);
+    this.want(text);
+  }
+
   /** Asks about a text, unless that is known; about nothing with null. */
   want(text) {
     const { status } = this.error ?? {};
     // What is refused once is refused again; what went wrong may go well.
-    const refused = status >= 400 && status < 500 && status !== NO_TOKEN;
+    const refused =
+      this.error?.stopped || (status >= 400 && status < 500 && status !== NO_TOKEN);
     if (text === this.text && (text === null || this.pending || this.answer || refused)) return;
     [this.text, this.answer, this.error, this.lost] = [text, null, null, false];
     this.requests.stop();

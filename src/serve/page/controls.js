@@ -226,6 +226,7 @@ export class Controls {
       this.build();
       this.changed();
     });
+    const mistake = make("p", { className: "mistake", role: "status" });
     const end = (which, word) => {
       const input = make("input", {
         type: "number",
@@ -237,8 +238,10 @@ export class Controls {
       input.dataset.end = which;
       input.addEventListener("change", () => {
         const wrong = catalogue.wrong({ ...axis, [which]: input.valueAsNumber });
+        const told = wrong && `${word} ${input.value || "nothing"}: ${wrong}`;
+        mistake.textContent = told ? `${told}; ${axis[which]} stays` : "";
+        input.setAttribute("aria-invalid", String(Boolean(wrong)));
         if (wrong) {
-          this.failed(new RangeError(`${title}, ${word} ${input.value || "nothing"}: ${wrong}`));
           input.value = axis[which];
         } else {
           axis[which] = input.valueAsNumber;
@@ -263,6 +266,7 @@ export class Controls {
       end("from", "from"),
       make("span", {}, "to"),
       end("to", "to"),
+      mistake,
     );
     part.dataset.axis = key;
     return part;
@@ -300,6 +304,7 @@ export class Controls {
       const { point: text } = pointTexts(state, this.catalogue, point);
       const law = await this.source.law(text, this.laws.signal);
       state.highest = Math.max(0, ...law.points.map(([, mu]) => mu));
+      this.#moveInside(law.points);
       drawLaw(element("law-curve"), law);
       element("law-told").textContent = law.at ? this.#lawAt(law.at) : "";
       element("law-remarks").textContent = law.remarks.map((remark) => `${remark}.`).join(" ");
@@ -308,6 +313,18 @@ export class Controls {
       element("law-told").textContent = this.words(error);
       element("law-remarks").textContent = "";
     }
+  }
+
+  /** A velocity that nobody has chosen is one of those that were measured. */
+  #moveInside(points) {
+    const { state } = this;
+    if (points.length === 0 || state.values.v0 !== undefined) return;
+    const speeds = points.map(([v]) => v);
+    const v0 = this.catalogue.value(state, "v0");
+    if (v0 > Math.min(...speeds) && v0 < Math.max(...speeds)) return;
+    state.values.v0 = speeds[Math.floor(speeds.length / 2)];
+    this.build();
+    this.changed();
   }
 
   /** What a law is at the working velocity, in words. */

@@ -24,7 +24,9 @@ export function make(tag, properties = {}, ...children) {
 
 /** Rows of a list of terms. */
 export function terms(list, rows) {
-  const parts = rows.flatMap(([term, text]) => [make("dt", {}, term), make("dd", {}, text)]);
+  const parts = rows.map(([term, text]) =>
+    make("div", {}, make("dt", {}, term), make("dd", {}, text)),
+  );
   list.replaceChildren(...parts);
 }
 

@@ -4,18 +4,23 @@ import { Catalogue, withoutZero } from "./catalogue.js";
 import { isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
 import { copy, download, element } from "./dom.js";
+import { Dropped, take } from "./dropped.js";
+import { Following } from "./following.js";
 import { learn } from "./formula.js";
+import { Helping } from "./helping.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
 import { Panel, counted } from "./panel.js";
 import { PlaneView } from "./plane.js";
 import { ZOOM, follow, zoomed } from "./pointing.js";
+import { offerPresets } from "./presets.js";
 import { Queue } from "./queue.js";
 import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
 import { addressOf, formulaOf, leavesTable, stateOf } from "./state.js";
+import { Steps } from "./steps.js";
 import { pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
 
@@ -56,7 +61,11 @@ class Explorer {
     this.live = new Live(source, catalogue, this.stale, { shown, failed });
     this.panel = new Panel(source, {
       moved: (start) => this.#started(start),
-      told: () => this.#say(),
+      told: () => {
+        this.#say();
+        this.helping.tell();
+        this.following.heard();
+      },
       lost: (error) => this.#lost(error),
       words,
     });
@@ -73,6 +82,22 @@ class Explorer {
       folder: (folder) => this.queue?.setFolder(folder),
       failed,
     });
+    this.helping = new Helping(source, this.state, catalogue, this.plane, {
+      shows: (ends, point) => this.#showEnds(ends, point),
+      takes: (point) => this.#take(point),
+      unit: (dimension) => this.#unit(dimension),
+      where: () => element("point-where").textContent,
+      at: () => (this.state.map ? null : this.panel.at),
+      failed,
+    });
+    this.following = new Following(this.panel, (point) => this.#glance(point));
+    this.steps = new Steps();
+    this.dropped = new Dropped(source, {
+      curve: (text) => this.#dropCurve(text),
+      setting: (given, name) => this.#dropSetting(given, name),
+      failed,
+    });
+    offerPresets();
     if (source.jobs) this.#queue(words);
     this.#listen();
     this.#mode();
@@ -111,6 +136,8 @@ class Explorer {
     element("origin").textContent = map ? "from the file" : "computed now";
     element("save-toml").title = map ? "The sweep file of this map" : "That of this chart";
     this.queue?.setLive(!map);
+    this.helping.clear();
+    element("nothing").hidden = true;
     this.plane.plane = null;
     this.stale.clear();
     if (map) {
@@ -173,6 +200,7 @@ class Explorer {
   /** What is set has changed. */
   changed() {
     if (this.state.map) return;
+    this.helping.clear();
     element("readout").classList.add("asking");
     this.#ownView();
     if (!this.state.point) this.plane.point = this.#usualPoint();
@@ -189,7 +217,7 @@ class Explorer {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
       this.settling = null;
-      history.replaceState(null, "", this.#address());
+      this.steps.put(this.#address());
       if (!this.state.map) this.look();
       this.#table();
     }, REST);
@@ -205,6 +233,7 @@ class Explorer {
     const time = `${cells} cells in ${plane.milliseconds.toFixed(1)} ms`;
     element("speed").textContent = plane.note ?? time;
     if (!plane.rests) return;
+    this.helping.shown(plane);
     // What is asked at the point tells it more exactly, soon.
     if (this.state.map || this.#exact()) this.#say();
     this.#table();
@@ -259,10 +288,10 @@ class Explorer {
     return unitOf(dimension, this.state.units);
   }
 
-  /** What is asked at the point; the reason why nothing can be. */
-  #asked() {
+  /** What is asked at a point; the reason why nothing can be. */
+  #asked(point = this.plane.point) {
     try {
-      return { texts: pointTexts(this.state, this.catalogue, this.plane.point) };
+      return { texts: pointTexts(this.state, this.catalogue, point) };
     } catch (error) {
       return { error };
     }
@@ -272,7 +301,10 @@ class Explorer {
   #exact() {
     const { plane } = this.plane;
     const { texts } = this.#asked();
-    const point = texts && this.panel.answerTo(texts.point);
+    const answer = texts && this.panel.answerTo(texts.point);
+    // It stays known while the answers follow the pointer.
+    if (answer) this.known = { text: texts.point, answer };
+    const point = texts?.point === this.known?.text ? this.known?.answer : null;
     if (!point || !plane || plane.field.name !== this.state.show) return null;
     const value = plane.field.name === "n_unstable" ? point.n_unstable : this.#answered(point);
     const parts = this.#values(plane, value, point.abscissa);
@@ -291,22 +323,37 @@ class Explorer {
     const words = exact ?? this.#words(this.plane.point);
     const readout = element("readout");
     readout.classList.remove("asking");
-    if (readout.textContent !== words) readout.textContent = words;
+    if (readout.textContent !== words) {
+      readout.textContent = words;
+      element("sheet").textContent = words || "At the point";
+    }
   }
 
   /** Looks closely at the point of the chart. */
   look() {
-    const { state, plane, catalogue } = this;
-    if (state.map) return this.saved.look();
+    this.following.stop();
+    if (this.state.map) return this.saved.look();
+    this.#lookAt(this.plane.point, "At the point");
+    return undefined;
+  }
+
+  /** Looks at where the pointer is; at the point again where that has left. */
+  #glance(point) {
+    if (this.state.map) return;
+    if (point) this.#lookAt(point.map((x) => Number(x.toPrecision(6))), "At the pointer");
+    else this.#lookAt(this.plane.point, "At the point");
+  }
+
+  #lookAt(point, title) {
+    const { state, catalogue } = this;
     const where = [state.x, state.y].map(({ name }, i) => {
       const { symbol, dimension } = catalogue.about(name);
-      return withUnit(`${symbol} = ${told(plane.point[i], 9)}`, this.#unit(dimension));
+      return withUnit(`${symbol} = ${told(point[i], 9)}`, this.#unit(dimension));
     });
-    const about = { where: where.join(", "), start: state.start };
-    const { texts, error } = this.#asked();
+    const about = { where: where.join(", "), start: state.start, title, at: point };
+    const { texts, error } = this.#asked(point);
     if (error) this.panel.refuse(error, about);
     else this.panel.look(texts, about);
-    return undefined;
   }
 
   /** Moves the point; by a key, in a map, at least to the next cell. */
@@ -316,6 +363,21 @@ class Explorer {
     else state.point = plane.point = point.map((x) => Number(x.toPrecision(9)));
     plane.draw();
     this.#say();
+  }
+
+  /** The card beside the pointer, and the answers at the side. */
+  #hover(point, place) {
+    const card = element("hover");
+    const words = this.#words(point);
+    card.textContent = words;
+    card.hidden = !words;
+    if (place) {
+      const { x, w } = this.plane.area();
+      card.classList.toggle("left", place.x > x + w / 2);
+      card.style.left = `${place.x}px`;
+      card.style.top = `${place.y}px`;
+    }
+    if (!this.state.map) this.following.to(words ? point : null);
   }
 
   #view(view) {
@@ -331,6 +393,56 @@ class Explorer {
     this.changed();
     this.plane.draw();
     return undefined;
+  }
+
+  /** Takes a measured friction curve. */
+  #dropCurve(text) {
+    this.#live();
+    Object.assign(this.state, { table: text, columns: "", speedUnit: "" });
+    // Forces are divided by the load, which is set there.
+    element("model-part").open = true;
+    this.controls.takeLaw("table");
+  }
+
+  /** Takes over what a file says; what of it is not shown here is told. */
+  async #dropSetting(given, name) {
+    const { catalogue, source, state } = this;
+    if (given.formula !== null) await learn(catalogue, source, given.formula);
+    this.#live();
+    const notes = take(state, catalogue, given);
+    this.plane.point = state.point;
+    this.#keepWhole();
+    this.controls.build();
+    this.changed();
+    const title = given.title || name;
+    element("address-told").textContent = notes.length ? `${title}: ${notes.join("; ")}.` : "";
+  }
+
+  /** Back to the live chart. */
+  #live() {
+    if (!this.state.map) return;
+    this.state.map = null;
+    this.#mode();
+  }
+
+  /** Shows a part of the plane, with the point there. */
+  #showEnds(ends, point) {
+    ["x", "y"].forEach((key, i) => {
+      const axis = this.state[key];
+      const log = axis.log && ends[i][0] * ends[i][1] > 0;
+      this.#setEnds(Object.assign(axis, { log }), new Scale(...ends[i], log));
+    });
+    this.controls.build();
+    this.state.point = point.map((x) => Number(x.toPrecision(6)));
+    this.plane.point = this.state.point;
+    this.#set();
+  }
+
+  /** Takes a setting that is offered. */
+  #take(point) {
+    this.#move(point, false);
+    this.look();
+    this.#settle();
   }
 
   /** The ends of an axis, within what there is, and with no more digits than the eye tells apart. */
@@ -405,7 +517,7 @@ class Explorer {
         this.#move(point, true);
         this.#settle();
       },
-      hover: (point) => (element("hover").textContent = this.#words(point)),
+      hover: (point, place) => this.#hover(point, place),
       view: (view) => this.#view(view),
     });
     const zoom = (factor) =>
@@ -419,10 +531,7 @@ class Explorer {
       // The button is gone then.
       element("motion-title").focus();
     });
-    click("to-live", () => {
-      this.state.map = null;
-      this.#mode();
-    });
+    click("to-live", () => this.#live());
     this.#downloads(click);
     element("table-part").addEventListener("toggle", () => this.#table());
     document.querySelector(".skip").addEventListener("click", (event) => {
@@ -430,12 +539,28 @@ class Explorer {
       event.preventDefault();
       element("chart-title").focus();
     });
+    const help = () => element("help").showModal();
+    click("to-help", help);
+    document.addEventListener("keydown", (event) => {
+      if (event.key !== "?" || event.target.matches("input, textarea, select")) return;
+      if (!element("help").open) help();
+    });
+    click("sheet", () => {
+      const sheet = element("sheet");
+      const open = sheet.getAttribute("aria-expanded") !== "true";
+      sheet.setAttribute("aria-expanded", String(open));
+    });
     window.addEventListener("hashchange", async () => {
       const { hash } = location;
       if (hash === this.#address()) return;
       if (formulaOf(hash) !== null) await learnAddress(this.catalogue, this.source);
       if (hash !== location.hash) return;
+      const { table } = this.state;
       Object.assign(this.state, stateOf(location.hash, this.catalogue));
+      // A table too long for an address is still here.
+      if (leavesTable({ ...this.state, table })) {
+        Object.assign(this.state, { table, notes: [] });
+      }
       this.#tellNotes(this.state.notes);
       this.#keepWhole();
       this.controls.build();
@@ -469,7 +594,7 @@ class Explorer {
       }
     });
     click("copy-link", (event) => {
-      history.replaceState(null, "", this.#address());
+      this.steps.put(this.#address());
       const words = leavesTable(this.state) ? "Copied, without the table" : "Copied";
       copy(location.href, event.target, words);
     });

@@ -1,9 +1,11 @@
 // The chart that is computed now: from what is set to a plane with its curves.
 
 import { coloursOf } from "./colours.js";
+import { element } from "./dom.js";
 import { Newest } from "./newest.js";
 import { Scale } from "./scale.js";
 import { sweepOf } from "./sweep.js";
+import { Waiting } from "./waiting.js";
 
 /** Cells of a chart along x and y. */
 const CELLS = [800, 600];
@@ -68,6 +70,13 @@ export class Live {
     [this.number, this.refused] = [0, 0];
     const failed = (error) => this.#failed(error);
     this.requests = new Newest(ask, show, failed, { most: 2, patience: PATIENCE });
+    this.waiting = new Waiting(element("chart-waiting"), "The chart", {
+      stop: () => {
+        this.stop();
+        this.stale.fail();
+      },
+      again: () => this.changed(this.state),
+    });
   }
 
   /** The sweep file of what is set. */
@@ -78,6 +87,7 @@ export class Live {
   /** What is set has changed, and may change again soon. */
   changed(state) {
     clearTimeout(this.resting);
+    this.state = state;
     this.set = this.stale.ask();
     const quick = QUICK.includes(state.show) ? state.show : "n_unstable";
     this.#want(state, [...new Set(["n_unstable", quick])], quick);
@@ -87,6 +97,7 @@ export class Live {
 
   stop() {
     clearTimeout(this.resting);
+    this.waiting.ends();
     this.requests.stop();
   }
 
@@ -95,6 +106,7 @@ export class Live {
       const text = this.text(state, CELLS, fields);
       const logs = [state.x.log, state.y.log];
       const { set } = this;
+      this.waiting.goesOn("chart");
       this.requests.want({ text, show, logs, rests, set, number: ++this.number });
     } catch (error) {
       // What was asked before is not what is set.
@@ -104,11 +116,13 @@ export class Live {
   }
 
   #failed(error) {
+    this.waiting.ends();
     this.stale.fail();
     this.told.failed(error);
   }
 
-  #show(chart, { show, logs, rests, set }) {
+  #show(chart, { show, logs, rests, set, number }) {
+    if (number === this.number) this.waiting.ends();
     const found = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
     const field = { ...this.fields[found.name], ...found };
     const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));

@@ -1,5 +1,6 @@
 // The motion from a start that can be dragged: in the phase plane and in time.
 
+import { stopped } from "./asked.js";
 import { element, terms, warned } from "./dom.js";
 import { titleOf } from "./frame.js";
 import { Newest } from "./newest.js";
@@ -20,7 +21,7 @@ export class MotionCard {
    *   words: (error: Error) => string}} told of: where a start was moved to, an answer, an error
    */
   constructor(source, { moved, heard, words }) {
-    Object.assign(this, { moved, words });
+    Object.assign(this, { moved, heard, words });
     this.phase = element("phase");
     this.start = REST;
     /** The case without its start, and the last answer: to which text and start, and what. */
@@ -59,6 +60,21 @@ export class MotionCard {
   case() {
     const [u, a] = this.start;
     return `${this.text}\n[start]\nx_dot0 = ${u}\na0 = ${a}\n`;
+  }
+
+  /** Nobody waits for the motion any more. */
+  stop() {
+    if (!this.pending) return;
+    this.requests.stop();
+    this.wanted = null;
+    this.last = { text: this.text, asked: this.case(), error: stopped() };
+    this.heard(this.last);
+  }
+
+  /** Asks for the same motion anew. */
+  again() {
+    this.last = {};
+    this.#ask();
   }
 
   /** Whether the motion from the start is not known yet. */
@@ -137,7 +153,9 @@ export class MotionCard {
     const every = Math.ceil(t.length / MOST_DRAWN);
     const thinned = (values) => values.filter((_, k) => k % every === 0 || k === values.length - 1);
     const data = [t, u, a, load].map(thinned);
-    const size = { width: Math.max(200, target.clientWidth), height: 260 };
+    // As high as the phase plane beside it.
+    const height = Math.max(130, this.phase.clientHeight);
+    const size = { width: Math.max(200, target.clientWidth), height };
     const { colour, axis } = linesIn(target);
     const line = (label, name, scale) => ({
       label,
@@ -153,9 +171,9 @@ export class MotionCard {
         ...size,
         scales: { x: { time: false } },
         axes: [
-          axis({ label: title("t", units.unit_t) }),
-          axis({ scale: "u", label: title("ẋ", units.unit_x_dot) }),
-          axis({ scale: "a", side: 1, label: both, grid: { show: false } }),
+          axis({ label: title("t", units.unit_t), size: 24, labelSize: 16 }),
+          axis({ scale: "u", label: title("ẋ", units.unit_x_dot), size: 34, labelSize: 16 }),
+          axis({ scale: "a", side: 1, label: both, size: 34, labelSize: 16, grid: { show: false } }),
         ],
         series: [
           { label: "t" },

@@ -5,6 +5,7 @@ import { copy, element, make, terms, warned } from "./dom.js";
 import { MotionCard } from "./motion.js";
 import { drawDelays, drawRoots } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
+import { Waiting } from "./waiting.js";
 
 /** Intervals and roots that are told in words. */
 const [INTERVALS, ROOTS] = [8, 8];
@@ -53,12 +54,25 @@ export class Panel {
     Object.assign(this, { shown, words });
     const heard = (asked) => {
       asked.lost = Boolean(asked.error) && lost(asked.error);
-      if (asked.error && !asked.lost && !asked.error.status) console.error(asked.error);
+      const { error, lost: gone } = asked;
+      if (error && !gone && !error.status && !error.stopped) console.error(error);
       this.#tell();
     };
     this.points = new Asked((text, signal) => source.point(text, signal), heard);
     this.velocities = new Asked((text, signal) => source.vc(text, signal), heard);
     this.motion = new MotionCard(source, { moved, heard, words });
+    const slow = (id, what, asked) => {
+      const again = () => {
+        asked.again();
+        this.#tell();
+      };
+      return new Waiting(element(id), what, { stop: () => asked.stop(), again });
+    };
+    this.waiting = {
+      point: slow("point-waiting", "The point", this.points),
+      vc: slow("vc-waiting", "The critical velocity", this.velocities),
+      motion: slow("motion-waiting", "The motion", this.motion),
+    };
     for (const field of ["command", "vc-command", "toml", "vc-toml", "case"]) {
       const click = (event) => copy(element(field).value, event.target);
       element(`copy-${field}`).addEventListener("click", click);
@@ -71,8 +85,8 @@ export class Panel {
   /**
    * Asks for everything at a point. Until that is there, what is shown stays, with its heading.
    * @param {{point: string | null, vc: string | null, motion: string | null, v0?: number}} texts
-   * @param {{where: string, start: number[] | null, fixed?: boolean}} about fixed: no other friction
-   *   law can be chosen
+   * @param {{where: string, start: number[] | null, fixed?: boolean, title?: string}} about fixed: no other friction
+   *   law can be chosen; title: whose answers these are
    */
   look(texts, about) {
     this.next = { texts, ...about, problem: null };
@@ -117,13 +131,16 @@ export class Panel {
     const { points, velocities, motion, next } = this;
     const slow = this.patience && (velocities.pending || motion.pending);
     const waits = points.pending || points.lost || (slow && !points.error);
+    this.#tellWaiting();
     const section = element("point-title").closest("section");
     section.classList.toggle("asking", Boolean(waits));
     section.setAttribute("aria-busy", String(Boolean(waits)));
     const former = waits && !this.patience && !element("cards").hidden;
     element("point-stale").textContent = former ? FORMER : "";
     if (waits) return;
-    const { texts, where, fixed = false } = next;
+    const { texts, where, fixed = false, title = "At the point" } = next;
+    element("point-title").textContent = title;
+    this.at = next.at ?? null;
     const problem = next.problem ?? points.error;
     element("point-where").textContent = where;
     element("point-problem").textContent = problem ? this.words(problem) : "";
@@ -137,6 +154,19 @@ export class Panel {
     motion.tell();
     this.#tellSame(texts);
     this.shown();
+  }
+
+  /** What takes long says so, and can be stopped. */
+  #tellWaiting() {
+    const { points, velocities, motion, waiting } = this;
+    for (const [which, asked, key] of [
+      ["point", points, points.text],
+      ["vc", velocities, velocities.text],
+      ["motion", motion, motion.text && motion.case()],
+    ]) {
+      if (asked.pending && !asked.lost) waiting[which].goesOn(key);
+      else waiting[which].ends(key);
+    }
   }
 
   /** A quantity in words, by its powers of force, length and time. */
@@ -164,7 +194,7 @@ export class Panel {
     if (more > 0) stable.push(`${more}${point.stable_delays_truncated ? " or more" : ""} others`);
     const rate = unitOf([0, 0, -1], this.units);
     const root = ([re, im]) => withUnit(told(re) + (im === 0 ? "" : ` ± ${told(im)} i`), rate);
-    const sure = point.certified ? "confirmed by the argument principle" : "not certified";
+    const sure = point.certified ? "certified" : "not certified";
     const abscissa = point.abscissa === null ? "unknown" : withUnit(told(point.abscissa), rate);
     terms(element("point"), [
       ["sliding is", `${verdict}, ${counted(point.n_unstable)}`],

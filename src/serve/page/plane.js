@@ -34,6 +34,8 @@ export class PlaneView {
     /** The scales of what is in view, x and y. */
     this.view = null;
     this.point = null;
+    /** The best setting with the box of the robust one, and another point that is compared. */
+    [this.best, this.other] = [null, null];
     new ResizeObserver(() => this.draw()).observe(canvas);
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => this.draw());
@@ -92,7 +94,9 @@ export class PlaneView {
     pen.within(area, () => {
       pen.image(this.image, this.#imageBox(area));
       this.#drawCurves(pen, area);
-      if (this.point) this.#drawPoint(pen, area);
+      if (this.best) this.#drawBest(pen, area);
+      if (this.other) this.#drawPoint(pen, area, this.other, "calm");
+      if (this.point) this.#drawPoint(pen, area, this.point, "mark");
     });
     drawFrame(pen, area, this.view, axes);
   }
@@ -118,11 +122,32 @@ export class PlaneView {
     }
   }
 
-  #drawPoint(pen, area) {
-    const [x, y] = placed(area, this.view, this.point);
+  #drawBest(pen, area) {
+    const { point, box } = this.best;
+    const lines = [];
+    if (box) {
+      const [xs, ys] = box;
+      const corners = [0, 1, 1, 0, 0].map((i, k) => [xs[i], ys[k < 2 || k === 4 ? 0 : 1]]);
+      lines.push(corners.flatMap((corner) => placed(area, this.view, corner)));
+    }
+    const [x, y] = placed(area, this.view, point);
+    for (const turn of [0, 1, 2, 3]) {
+      const [dx, dy] = [Math.cos((turn * Math.PI) / 4), Math.sin((turn * Math.PI) / 4)];
+      lines.push([x - 8 * dx, y - 8 * dy, x + 8 * dx, y + 8 * dy]);
+    }
     for (const [colour, width] of [
       [pen.colour("halo"), 5],
-      [pen.colour("mark"), 2],
+      [pen.colour("curve"), 2],
+    ]) {
+      for (const line of lines) pen.line(line, { colour, width });
+    }
+  }
+
+  #drawPoint(pen, area, point, ink) {
+    const [x, y] = placed(area, this.view, point);
+    for (const [colour, width] of [
+      [pen.colour("halo"), 5],
+      [pen.colour(ink), 2],
     ]) {
       pen.disc([x, y], 6, { stroke: colour, width });
       for (const [dx, dy] of [

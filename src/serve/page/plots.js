@@ -9,7 +9,16 @@ export function linesIn(target) {
   const style = getComputedStyle(target);
   const colour = (name) => style.getPropertyValue(`--${name}`).trim();
   const grid = { stroke: colour("grid"), width: 1 };
-  const axis = (more) => ({ stroke: style.color, grid, ticks: grid, ...more });
+  const font = "12px system-ui, sans-serif";
+  const axis = (more) => ({
+    stroke: style.color,
+    grid,
+    ticks: { ...grid, size: 4 },
+    gap: 2,
+    font,
+    labelFont: font,
+    ...more,
+  });
   return { colour, axis };
 }
 

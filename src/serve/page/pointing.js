@@ -21,7 +21,7 @@ export const moved = (view, by) => view.map((scale, axis) => scale.between(by[ax
  * Follows what is done on the canvas of a plane.
  * @param {import("./plane.js").PlaneView} plane
  * @param {{look: (point: number[]) => void, move: (point: number[]) => void,
- *   hover: (point: number[] | null) => void, view: (view: object[] | null) => void}} told
+ *   hover: (point: number[] | null, place?: {x: number, y: number}) => void, view: (view: object[] | null) => void}} told
  *   a null view is that of the beginning
  */
 export function follow(plane, told) {
@@ -58,7 +58,10 @@ export function follow(plane, told) {
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!plane.view) return;
-    if (!pointers.has(event.pointerId)) return told.hover(plane.valueAt(...at(event)));
+    if (!pointers.has(event.pointerId)) {
+      const [x, y] = at(event);
+      return told.hover(plane.valueAt(x, y), { x, y });
+    }
     pointers.set(event.pointerId, at(event));
     const [now, before] = [partsOf(middle()), partsOf(began.middle)];
     const [x, y] = middle();

@@ -149,6 +149,7 @@ export class Saved {
     this.stale.clear();
     for (const id of ["speed", "readout", "hover"]) element(id).textContent = "";
     for (const id of ["legend", "table"]) element(id).replaceChildren();
+    element("hover").hidden = true;
     delete element("legend").dataset.key;
     element("chart-title").textContent = title;
     element("reading").hidden = true;

@@ -1,0 +1,128 @@
+// Files that are dropped onto the page: measured friction curves, and texts of settings.
+
+import { GAINS, SHOWN, UNITS } from "./catalogue.js";
+import { element } from "./dom.js";
+import { parametersOf } from "./sweep.js";
+
+/** The most bytes of a text that is read, as the server has it. */
+const MOST = 2 ** 18;
+/** How names of measured curves and of texts of settings end. */
+const [CURVES, TEXTS] = [
+  ["csv", "tsv", "txt", "dat"],
+  ["toml"],
+];
+
+const ending = ({ name }) => name.split(".").pop().toLowerCase();
+
+/** Which of the units that the page offers these are; none where it does not offer them. */
+const offered = (units) => {
+  if (!units) return "";
+  const joined = units.join(",");
+  return joined in UNITS ? joined : null;
+};
+
+/**
+ * Sets a view to what a file says, and returns what of it the page cannot show, in words.
+ * @param {object} state
+ * @param {import("./catalogue.js").Catalogue} catalogue
+ * @param {object} given the answer about the file
+ */
+export function take(state, catalogue, given) {
+  const notes = [];
+  const { values, law, axes } = given;
+  state.law = law ?? "none";
+  if (law && !catalogue.law(law)) {
+    notes.push(`motions under the law ${law} are not followed on the page`);
+    state.law = "none";
+  }
+  if (given.formula !== null) state.formula = given.formula;
+  state.table = given.points.map((row) => row.join(", ")).join("\n");
+  [state.columns, state.speedUnit, state.highest] = ["", "", 0];
+  const units = offered(given.units);
+  if (units === null) notes.push(`units ${given.units.join(", ")} are not offered by the page`);
+  state.units = units ?? "";
+  const used = (gain) => values[gain] || axes.some(({ name }) => name === gain);
+  const both = GAINS.mixed.every(used);
+  state.control = both ? "mixed" : used("alpha_n") ? "load" : "velocity";
+  state.values = { ...values };
+  const field = given.fields.find((name) => SHOWN.includes(name));
+  state.show = field ?? "n_unstable";
+  const known = parametersOf(state, catalogue);
+  const shown = [];
+  for (const { name, from, to, middle, log } of axes) {
+    const axis = { name, from, to, log };
+    const fits = known.includes(name) && !catalogue.wrong(axis);
+    // The last axes of a sweep are those of its planes.
+    if (fits) shown.push(axis);
+    else notes.push(`the axis ${name} is not one of the page`);
+    state.values[name] = middle;
+  }
+  const [x, y] = shown.slice(-2);
+  if (x && y) [state.x, state.y] = [x, y];
+  else if (x) [state.x, state.y] = [x, catalogue.axis("tau", state, x)];
+  const point = [state.x, state.y].map(({ name }) => values[name]);
+  state.point = point.every(Number.isFinite) ? point : null;
+  const { x_dot0: u, a0: a = 0 } = values;
+  state.start = Number.isFinite(u) ? [u, a] : null;
+  catalogue.mendAxes(state, known, 0);
+  return notes;
+}
+
+export class Dropped {
+  /**
+   * @param {object} source see source.js
+   * @param {{curve: (text: string) => void, setting: (given: object, name: string) => void,
+   *   failed: (error: Error) => void}} done
+   */
+  constructor(source, done) {
+    Object.assign(this, { source, ...done });
+    const over = element("dropping");
+    const files = ({ dataTransfer }) => dataTransfer?.types.includes("Files");
+    document.addEventListener("dragover", (event) => {
+      if (!files(event)) return;
+      event.preventDefault();
+      over.hidden = false;
+    });
+    document.addEventListener("dragleave", (event) => {
+      if (!event.relatedTarget) over.hidden = true;
+    });
+    document.addEventListener("drop", (event) => {
+      if (!files(event)) return;
+      event.preventDefault();
+      over.hidden = true;
+      this.#read([...event.dataTransfer.files]);
+    });
+    element("file").addEventListener("change", ({ target }) => {
+      this.#read([...target.files]);
+      target.value = "";
+    });
+  }
+
+  async #read(files) {
+    try {
+      if (files.length !== 1) throw new RangeError("one file at a time is read");
+      await this.#take(files[0]);
+    } catch (error) {
+      const [file] = files;
+      if (file) error.message = `${file.name}: ${error.message}`;
+      this.failed(error);
+    }
+  }
+
+  async #take(file) {
+    const kind = ending(file);
+    const curve = CURVES.includes(kind);
+    if (!curve && !TEXTS.includes(kind)) {
+      const known = [...CURVES, ...TEXTS].map((of) => `.${of}`).join(", ");
+      const help = kind === "h5" ? "; maps are shown by `slipmap serve FOLDER`" : "";
+      throw new RangeError(`a file that ends with one of ${known} is read${help}`);
+    }
+    if (file.size > MOST) {
+      throw new RangeError(`${file.size} bytes; at most ${MOST} are read`);
+    }
+    const text = new TextDecoder("utf-8", { fatal: !curve }).decode(await file.arrayBuffer());
+    if (text.includes("\0")) throw new RangeError("it is no text");
+    if (curve) this.curve(text);
+    else this.setting(await this.source.setting(text), file.name);
+  }
+}
