@@ -90,6 +90,8 @@ pub mod linear;
 #[cfg(feature = "store")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod maps;
+#[cfg(any(feature = "explore", feature = "store"))]
+pub(crate) mod meaning;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;
 #[cfg(feature = "serve")]

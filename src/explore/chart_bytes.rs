@@ -4,6 +4,9 @@ use serde::Serialize;
 
 use super::chart::{Chart, ChartCurve};
 use super::encoded::{Array, Arrays};
+use crate::meaning::gap::Rule;
+use crate::meaning::shown::{Cells, Column, Shown};
+use crate::setting::Field;
 use crate::setting::field::Storage;
 
 /// What a chart says before its numbers.
@@ -41,6 +44,12 @@ struct FieldHead {
     kinds: Option<Vec<&'static str>>,
     #[serde(flatten)]
     array: Array,
+    /// What its colours mean; none of the status.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shown: Option<Shown>,
+    /// For each cell 0, or why it shows no value: a number of `shown`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gaps: Option<Array>,
 }
 
 /// What the head says of a curve.
@@ -101,25 +110,42 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
 /// The fields of a chart, then its status.
 fn fields(chart: &Chart, arrays: &mut Arrays) -> Vec<FieldHead> {
     let (plan, cells) = (chart.grid.plan(), &chart.grid.cells);
-    let (mut kinds, mut columns) = (cells.kinds.iter(), cells.columns.iter());
+    let fields = &plan.spec.fields;
+    let (mut kinds, mut reals) = (cells.kinds.iter(), cells.columns.iter());
+    let column = |field: &Field| match field.storage() {
+        Storage::Count => Column::U16(cells.n_unstable.as_deref().unwrap_or_default()),
+        Storage::Kind | Storage::Few => {
+            Column::U8(kinds.next().map_or(&[], |column| &column.cells[..]))
+        }
+        Storage::Real => Column::F64(reals.next().map_or(&[], |column| &column.cells[..])),
+    };
+    let columns: Vec<Column> = fields.iter().map(column).collect();
     let mut heads = Vec::new();
-    for &field in &plan.spec.fields {
-        let array = match field.storage() {
-            Storage::Count => arrays.push_runs(cells.n_unstable.as_deref().unwrap_or_default()),
-            Storage::Kind | Storage::Few => {
-                arrays.push_runs(kinds.next().map_or(&[], |column| &column.cells[..]))
-            }
-            Storage::Real => {
-                let column = columns.next().into_iter().flat_map(|column| &column.cells);
-                arrays.push(column.copied())
-            }
+    for (&field, &values) in fields.iter().zip(&columns) {
+        let unit = field.unit(&plan.spec.units);
+        let rule = Rule::of(field, fields);
+        let why = fields.iter().position(|other| Some(*other) == rule.why());
+        let told = Cells {
+            field,
+            unit: &unit,
+            rule,
+            values,
+            status: &cells.status,
+            why: why.map(|place| columns[place]),
         };
+        let (shown, gaps) = told.shown(|_| false, |_| false);
         heads.push(FieldHead {
             name: field.name(),
             long_name: field.long_name(),
-            unit: field.unit(&plan.spec.units),
             kinds: field.kinds(),
-            array,
+            array: match values {
+                Column::U16(values) => arrays.push_runs(values),
+                Column::U8(values) => arrays.push_runs(values),
+                Column::F64(values) => arrays.push(values.iter().copied()),
+            },
+            unit,
+            shown: Some(shown),
+            gaps: Some(arrays.push_runs(&gaps)),
         });
     }
     heads.push(FieldHead {
@@ -128,6 +154,8 @@ fn fields(chart: &Chart, arrays: &mut Arrays) -> Vec<FieldHead> {
         unit: "1".into(),
         kinds: None,
         array: arrays.push_runs(&cells.status),
+        shown: None,
+        gaps: None,
     });
     heads
 }

@@ -2,6 +2,10 @@
 
 use serde::Serialize;
 
+use crate::linear::status::MOST_COUNTED;
+use crate::meaning::flags::flags;
+use crate::meaning::legend::{Entry, Mark, classes};
+use crate::setting::field::Storage;
 use crate::setting::formula::{EXAMPLE, GivenFormula};
 use crate::setting::formula_keys::formula_of;
 use crate::setting::law_kind::{LawKind, NamedLaw};
@@ -9,6 +13,7 @@ use crate::setting::parameter::{Folded, Group, Page};
 use crate::setting::system::parameter::OwnParameter;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
+use crate::sweep::engine::FEW_FILL;
 use crate::text::SpecError;
 
 /// All tables.
@@ -23,6 +28,8 @@ pub struct Known {
     pub laws: Vec<KnownLaw>,
     /// What a map can hold.
     pub fields: Vec<KnownField>,
+    /// The flags of a cell's status.
+    pub flags: Vec<KnownFlag>,
 }
 
 /// A parameter.
@@ -124,6 +131,35 @@ pub struct KnownField {
     pub kinds: Option<Vec<&'static str>>,
     /// How it is stored: `count`, `kind`, `few` or `real`.
     pub storage: &'static str,
+    /// Its classes by their numbers, the last one for all larger numbers too; none where its
+    /// values lie on a scale.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub classes: Option<Vec<KnownClass>>,
+    /// The number that stands for all larger ones too, if its numbers are counts.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub largest: Option<u16>,
+}
+
+/// A class of a field's values.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct KnownClass {
+    /// Its words in a legend.
+    pub text: String,
+    /// The colour of its cells.
+    pub colour: String,
+}
+
+/// A flag of a cell's status.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct KnownFlag {
+    /// Its bit.
+    pub mask: u8,
+    /// Its name.
+    pub name: &'static str,
+    /// The same in words.
+    pub text: &'static str,
 }
 
 impl Known {
@@ -144,7 +180,19 @@ impl Known {
             parameters: Parameter::ALL.map(KnownParameter::of).into(),
             laws: formulas.chain([table, KnownLaw::of_example()]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
+            flags: KnownFlag::all(),
         }
+    }
+}
+
+impl KnownFlag {
+    /// All flags, in the order of their bits.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let flags = flags().into_iter();
+        flags
+            .map(|(mask, name, text)| Self { mask, name, text })
+            .collect()
     }
 }
 
@@ -265,6 +313,25 @@ impl KnownField {
             stable_sign: field.spread().stable_sign(),
             kinds: field.kinds(),
             storage: field.storage().name(),
+            classes: classes(field).map(|all| all.into_iter().map(KnownClass::of).collect()),
+            largest: match field.storage() {
+                Storage::Count => Some(MOST_COUNTED),
+                Storage::Few => Some(u16::from(FEW_FILL - 1)),
+                Storage::Kind | Storage::Real => None,
+            },
+        }
+    }
+}
+
+impl KnownClass {
+    fn of(class: Entry) -> Self {
+        let colour = match class.mark {
+            Mark::Colour(colour) => colour,
+            Mark::Gap(gap) => gap.ground(),
+        };
+        Self {
+            text: class.text,
+            colour: colour.hex(),
         }
     }
 }

@@ -1,83 +1,9 @@
 //! The cells of a picture: each has a value, or a reason why it shows none.
 
-use crate::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED, OUTSIDE_MODEL};
+use crate::meaning::gap::{Gap, Rule};
 use crate::setting::Field;
-use crate::setting::field::OUTCOMES;
-use crate::setting::regime_at_v0::RegimeAtV0;
-use crate::setting::source::Source;
-use crate::slip::outcome::Outcome;
 use crate::store::map_file::Plane;
 use crate::store::{MapFile, StoreError};
-use crate::sweep::engine::STATUS_FILL;
-
-/// Why a cell shows no value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) enum Gap {
-    /// Its computation did not converge.
-    NotConverged,
-    /// Two methods disagree about it.
-    Disagree,
-    /// It lies within rounding of a boundary.
-    Marginal,
-    /// The field itself is undecided there.
-    Undecided,
-    /// The normal load reaches 0 first.
-    LiftsOff,
-    /// Stick-slip persists at the largest velocity that was tried.
-    Persists,
-    /// The setting is outside the model's range.
-    OutsideModel,
-    /// The field has no value there.
-    NoValue,
-    /// The cell is not computed yet.
-    NotComputed,
-}
-
-impl Gap {
-    /// Every gap, in the order of legends.
-    #[cfg(feature = "picture")]
-    pub(super) const ALL: [Self; 9] = [
-        Self::NotConverged,
-        Self::Disagree,
-        Self::Marginal,
-        Self::Undecided,
-        Self::LiftsOff,
-        Self::Persists,
-        Self::OutsideModel,
-        Self::NoValue,
-        Self::NotComputed,
-    ];
-
-    /// Whether an answer exists but is not known, whatever number the map has.
-    pub(super) const fn is_unknown(self) -> bool {
-        matches!(
-            self,
-            Self::NotConverged | Self::Disagree | Self::Marginal | Self::Undecided
-        )
-    }
-
-    /// Its words in the legend of a picture of `field`.
-    #[cfg(feature = "picture")]
-    pub(super) fn words(self, field: Field) -> &'static str {
-        match self {
-            Self::NotConverged => "not converged",
-            Self::Disagree => "methods disagree",
-            Self::Marginal => "marginal",
-            Self::Undecided => "undecided",
-            Self::LiftsOff => "no value: lifts off",
-            Self::Persists => "no value: persists",
-            Self::OutsideModel => "no value: outside the model",
-            Self::NoValue => match field {
-                Field::VLiftoff => "no lift-off",
-                Field::VSmooth => "not smooth at v_max",
-                Field::SettleTime => "does not settle",
-                Field::LastRelease => "sticks go on",
-                _ => "no value",
-            },
-            Self::NotComputed => "not computed",
-        }
-    }
-}
 
 /// A plane of a field, with the cells that have no value to show.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,25 +28,16 @@ impl Known {
     ) -> Result<Self, StoreError> {
         let plane = map.plane(field, index, axes, most)?;
         let statuses = map.status_plane(index, axes, most)?;
-        let told = match why_field(map, field) {
+        let rule = Rule::of(field, map.fields());
+        let told = match rule.why() {
             Some(other) if plane.cells.iter().any(|v| v.is_nan()) => {
-                Some((other, map.plane(other, index, axes, most)?))
+                Some(map.plane(other, index, axes, most)?)
             }
             _ => None,
         };
-        let with_roots = map
-            .fields()
-            .iter()
-            .any(|f| matches!(f.source(), Source::Roots(_)));
         let gap = |(i, (&value, &status)): (usize, (&f64, &u8))| {
-            let why = || {
-                let (other, plane) = told.as_ref()?;
-                ended(*other, *plane.cells.get(i)?)
-            };
-            gap(field, value, status, with_roots).map(|gap| match gap {
-                Gap::NoValue => why().unwrap_or(gap),
-                gap => gap,
-            })
+            let why = told.as_ref().and_then(|plane| plane.cells.get(i));
+            rule.gap(value, status, why.copied())
         };
         let gaps = plane.cells.iter().zip(&statuses).enumerate();
         let gaps = gaps.map(gap).collect();
@@ -134,165 +51,5 @@ impl Known {
         cells
             .filter(|(_, gap)| gap.is_none())
             .map(|(value, _)| *value)
-    }
-}
-
-/// The field of the map that says why a cell of another field has no value.
-fn why_field(map: &MapFile, field: Field) -> Option<Field> {
-    let held = |field: &Field| map.fields().contains(field);
-    let asked = match field {
-        Field::VLiftoff | Field::Outcome => return None,
-        _ => field.of_vc() || field.of_motion(),
-    };
-    let by_outcome = Some(Field::Outcome).filter(held);
-    let by_velocity = Some(Field::VLiftoff).filter(held);
-    by_outcome.or(by_velocity).filter(|_| asked)
-}
-
-/// The gap of a cell without a value, from the value of the field that says why.
-fn ended(told_by: Field, value: f64) -> Option<Gap> {
-    if told_by == Field::VLiftoff {
-        return (!value.is_nan()).then_some(Gap::LiftsOff);
-    }
-    match kind_name(value)? {
-        "lift-off" => Some(Gap::LiftsOff),
-        "persists" => Some(Gap::Persists),
-        _ => None,
-    }
-}
-
-fn kind_name(number: f64) -> Option<&'static str> {
-    // The cast would turn NaN into 0.
-    (number >= 0.0).then(|| OUTCOMES.get(number as usize).copied())?
-}
-
-/// Why the number `value` of a cell with this status is not shown; none where it is.
-fn gap(field: Field, value: f64, status: u8, with_roots: bool) -> Option<Gap> {
-    if status == STATUS_FILL {
-        return Some(Gap::NotComputed);
-    }
-    if status & OUTSIDE_MODEL != 0 && value.is_nan() {
-        return Some(Gap::OutsideModel);
-    }
-    let undecided = match field {
-        Field::Outcome => value == f64::from(Outcome::Undecided as u8),
-        Field::Regime => value == f64::from(RegimeAtV0::Undecided as u8),
-        _ => false,
-    };
-    let amiss = status & concerning(field, undecided || value.is_nan(), status, with_roots);
-    [
-        (DISAGREE, Gap::Disagree),
-        (NOT_CONVERGED, Gap::NotConverged),
-        (MARGINAL, Gap::Marginal),
-    ]
-    .into_iter()
-    .find(|(flag, _)| amiss & flag != 0)
-    .map(|(_, gap)| gap)
-    .or(undecided.then_some(Gap::Undecided))
-    .or(value.is_nan().then_some(Gap::NoValue))
-}
-
-/// The flags of a status with which a value of the field is not known; `open`: the field has no
-/// answer. The status is shared by all fields of a cell, so flags of roots do not concern the
-/// others.
-fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
-    let of_count = match field.tells_stable(0.0) {
-        Some(_) => MARGINAL,
-        None => 0,
-    };
-    let certified = status & CERTIFIED != 0;
-    match field.source() {
-        Source::Line if field == Field::NUnstable && open => of_count | NOT_CONVERGED,
-        Source::Line if with_roots && !certified => of_count | DISAGREE,
-        Source::Line => of_count,
-        Source::Linear(_) => 0,
-        // A radius that is not tight is proved nevertheless.
-        Source::Margins(_) if open => of_count | NOT_CONVERGED,
-        Source::Margins(_) => of_count,
-        Source::Roots(_) if certified => of_count,
-        Source::Roots(_) => of_count | NOT_CONVERGED | DISAGREE,
-        // Where v_c is undecided, its bounds may still decide the regime.
-        Source::Critical(_) if field == Field::Regime && !open => DISAGREE,
-        Source::Critical(_) if field == Field::Regime => DISAGREE | NOT_CONVERGED | MARGINAL,
-        // The bounds are known even where v_c is not.
-        Source::Critical(_) if matches!(field, Field::VcLower | Field::VcUpper) && !open => {
-            DISAGREE
-        }
-        // The error and the upper bound are known even where the share is not.
-        Source::Basin(_) if field != Field::BasinShare => DISAGREE,
-        Source::Motion(_)
-        | Source::MotionOrCritical(..)
-        | Source::Critical(_)
-        | Source::Basin(_) => NOT_CONVERGED | DISAGREE,
-        Source::Limit(_) => NOT_CONVERGED,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flags_hide_the_fields_that_they_concern() {
-        let of = |field, value, status| gap(field, value, status, false);
-        assert_eq!(of(Field::Vc, 0.0, 0), None);
-        assert_eq!(of(Field::Vc, 0.0, NOT_CONVERGED), Some(Gap::NotConverged));
-        assert_eq!(
-            of(Field::VSmooth, 1.0, NOT_CONVERGED),
-            Some(Gap::NotConverged)
-        );
-        assert_eq!(of(Field::VcUpper, 1.0, NOT_CONVERGED), None);
-        assert_eq!(of(Field::Regime, 0.0, NOT_CONVERGED), None);
-        assert_eq!(of(Field::NUnstable, 2.0, NOT_CONVERGED), None);
-        assert_eq!(
-            of(Field::NUnstable, f64::NAN, NOT_CONVERGED),
-            Some(Gap::NotConverged)
-        );
-        assert_eq!(of(Field::NUnstable, 2.0, MARGINAL), Some(Gap::Marginal));
-        assert_eq!(of(Field::Vc, 1.0, MARGINAL), None);
-        assert_eq!(
-            of(Field::Vc, 1.0, DISAGREE | NOT_CONVERGED),
-            Some(Gap::Disagree)
-        );
-        let undecided = f64::from(RegimeAtV0::Undecided as u8);
-        assert_eq!(of(Field::Regime, undecided, 0), Some(Gap::Undecided));
-        assert_eq!(of(Field::Regime, undecided, MARGINAL), Some(Gap::Marginal));
-        assert_eq!(of(Field::Abscissa, -1.0, CERTIFIED | NOT_CONVERGED), None);
-        assert_eq!(of(Field::Abscissa, -1.0, DISAGREE), Some(Gap::Disagree));
-        assert_eq!(of(Field::Vc, f64::NAN, 0), Some(Gap::NoValue));
-        let outside = of(Field::Vc, f64::NAN, OUTSIDE_MODEL);
-        assert_eq!(outside, Some(Gap::OutsideModel));
-        assert_eq!(of(Field::Vc, 0.0, STATUS_FILL), Some(Gap::NotComputed));
-    }
-
-    /// If the roots disagree with the closed form, the count is in dispute too.
-    #[test]
-    fn counts_are_known_where_roots_agree() {
-        let of = |status, with_roots| gap(Field::NUnstable, 2.0, status, with_roots);
-        assert_eq!(of(DISAGREE, true), Some(Gap::Disagree));
-        assert_eq!(of(DISAGREE | CERTIFIED, true), None);
-        assert_eq!(of(DISAGREE, false), None);
-    }
-
-    #[test]
-    fn ends_of_stick_slip_tell_why_there_is_no_value() {
-        let number = |name: &str| OUTCOMES.iter().position(|o| *o == name).unwrap() as f64;
-        let by_outcome = |name| ended(Field::Outcome, number(name));
-        assert_eq!(by_outcome("lift-off"), Some(Gap::LiftsOff));
-        assert_eq!(by_outcome("persists"), Some(Gap::Persists));
-        assert_eq!(by_outcome("grazing"), None);
-        assert_eq!(ended(Field::Outcome, f64::NAN), None);
-        assert_eq!(ended(Field::VLiftoff, 2.0), Some(Gap::LiftsOff));
-        assert_eq!(ended(Field::VLiftoff, f64::NAN), None);
-    }
-
-    #[test]
-    fn no_two_gaps_have_the_same_words() {
-        for field in Field::ALL {
-            for (i, gap) in Gap::ALL.into_iter().enumerate() {
-                let mut others = Gap::ALL[..i].iter();
-                assert!(others.all(|other| other.words(field) != gap.words(field)));
-            }
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! A small picture of a map for the terminal.
 
-use super::known::{Gap, Known};
+use super::known::Known;
 use super::numbers::short;
+use crate::meaning::gap::Gap;
 use crate::setting::field::Storage;
 use crate::setting::{Field, Parameter};
 use crate::store::map_file::MapAxis;

@@ -58,8 +58,8 @@ async function cellsByChance(page, count, seed) {
 /** The colours of counts, as the legend shows them. */
 const legend = (page) =>
   page.evaluate(() => {
-    const { colours } = window.slipmap.plane.plane;
-    return colours.colours.map((c) => [1, 3, 5].map((at) => parseInt(c.slice(at, at + 2), 16)));
+    const { classes } = window.slipmap.plane.plane.field;
+    return classes.map(({ colour: c }) => [1, 3, 5].map((at) => parseInt(c.slice(at, at + 2), 16)));
   });
 
 /** Pixels against the command; `flags` of a cell's values. */
@@ -906,49 +906,36 @@ test("the panel's numbers have the units of the model", async () => {
   assert.ok((await words(page, "vc")).includes(Number(asked(command).vc.toPrecision(6))));
 });
 
-test("kinds have colours of their own, and the legend tells those in view", async () => {
+test("kinds and numbers of unstable roots have colours and words of their own", async () => {
   const page = await openPage(browser, server.link);
-  const found = await page.evaluate(async () => {
-    const [{ coloursOf }, { tellLegend }] = await Promise.all([
-      import("./colours.js"),
-      import("./legend.js"),
-    ]);
-    const field = window.slipmap.catalogue.fields.find(({ name }) => name === "outcome");
-    const cells = [7, 7, 9, 0, 3];
-    const colours = coloursOf(field, cells);
-    const list = document.createElement("ul");
-    tellLegend(list, { colours, field, cells, bits: [0, 0, 0, 4, 2], marks: [] });
-    return [colours.colours, [...list.children].map((item) => item.textContent)];
+  const [kinds, counts, names] = await page.evaluate(async () => {
+    const { coloursOf } = await import("./colours.js");
+    const { fields } = window.slipmap.catalogue;
+    const of = (wanted) => fields.find(({ name }) => name === wanted);
+    const { shown } = window.slipmap.plane.plane;
+    const [outcome, count] = ["outcome", "n_unstable"].map((name) => coloursOf(of(name), shown));
+    const pixels = (colours, n) => Array.from({ length: n }, (_, number) => colours.pixel(number));
+    const words = [0, 1, 12, 65534, NaN].map((n) => count.name(n));
+    return [pixels(outcome, 14), pixels(count, 9), [...words, outcome.name(3)]];
   });
-  assert.equal(new Set(found[0]).size, 14);
-  assert.deepEqual(found[1], ["grazing", "period-doubling"]);
+  assert.equal(new Set(kinds).size, 14);
+  assert.equal(new Set(counts).size, 9);
+  assert.deepEqual(names, [
+    "stable",
+    "1 unstable root",
+    "12 unstable roots",
+    "65534 or more unstable roots",
+    "no value",
+    "lift-off",
+  ]);
 });
 
-test("each number of unstable roots has a colour and an entry of its own", async () => {
+test("the legend tells what is in view", async () => {
   const page = await openPage(browser, server.link);
-  const [colours, words, names] = await page.evaluate(async () => {
-    const [{ coloursOf }, { tellLegend }] = await Promise.all([
-      import("./colours.js"),
-      import("./legend.js"),
-    ]);
-    const field = window.slipmap.catalogue.fields.find(({ name }) => name === "n_unstable");
-    const cells = [1, 3, 2, 2, 65535, 9, 0];
-    const colours = coloursOf(field, cells);
-    const list = document.createElement("ul");
-    tellLegend(list, { colours, field, cells, bits: [0, 0, 0, 0, 0, 0, 4], marks: [] });
-    const pixels = Array.from({ length: 9 }, (_, n) => colours.pixel(n));
-    const words = [...list.children].map((item) => item.textContent);
-    return [pixels, words, [0, 1, 12, 65535].map((n) => colours.name(n))];
-  });
-  assert.equal(new Set(colours).size, 9);
-  assert.deepEqual(words, [
-    "1 unstable root",
-    "2 unstable roots",
-    "3 unstable roots",
-    "8 or more unstable roots",
-    "no value",
-  ]);
-  assert.deepEqual(names, ["stable", "1 unstable root", "12 unstable roots", "no value"]);
+  const legend = () => page.locator("#legend > li").allInnerTexts();
+  assert.deepEqual(await legend(), ["unstable roots", "0, stable", "2", "4", "6"]);
+  await show(page, "#v=1&x=alpha_v,-0.5,-0.4&y=tau,3,3.5");
+  assert.deepEqual(await legend(), ["unstable roots", "0, stable"]);
 });
 
 test("where a map has no v0, only the critical velocity is told", async () => {

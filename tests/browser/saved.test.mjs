@@ -196,12 +196,13 @@ async function pixelsByChance(page, count, seed) {
   const parts = Array.from({ length: count }, () => [numbers.next().value, numbers.next().value]);
   return page.evaluate((all) => {
     const { plane } = window.slipmap;
-    const { ends, nx, ny, axes, cells, bits, colours } = plane.plane;
+    const { ends, nx, ny, axes, cells, bits, gaps, colours } = plane.plane;
     return all.map((part) => {
       const cell = [Math.floor(part[0] * nx), Math.floor(part[1] * ny)];
       const n = cell[0] * ny + cell[1];
       const point = cell.map((index, i) => ends[i].value((index + 0.5) / [nx, ny][i]));
-      const pixel = colours.pixel(cells[n]);
+      // Over what has no value to show there are lines.
+      const pixel = gaps[n] ? 0 : colours.pixel(cells[n]);
       return {
         point,
         values: cell.map((index, i) => axes[i].values[index]),
@@ -693,7 +694,7 @@ test("where there is no cell, there is no value", async () => {
   await page.locator("#table-part").evaluate((part) => (part.open = true));
   for (const [bits, words] of [
     [2, "not read yet"],
-    [4, "not computed yet"],
+    [4, "not computed"],
   ]) {
     await windows(page, async (route) => {
       const response = await route.fetch();
@@ -702,6 +703,13 @@ test("where there is no cell, there is no value", async () => {
         head.bits = run("u8", bits, length);
         head.values = run("u16", 65535, length);
         head.status = run("u8", 255, length);
+        const fill = { gap: 9, name: "not-computed", text: words, ground: "#ffffff", lines: [] };
+        head.gaps = run("u8", bits === 2 ? 0 : fill.gap, length);
+        head.shown = {
+          ...head.shown,
+          entries: bits === 2 ? [] : [{ text: words, colour: null, gap: fill.gap }],
+          fills: bits === 2 ? [] : [fill],
+        };
         head.complete = bits !== 2;
       });
       // The next question may come while this is no longer listened to.
@@ -862,7 +870,10 @@ test("ticks of a narrow view can be told apart, and are not cut off", async () =
     await atRest(page);
     const { labels, over } = await page.evaluate(async () => {
       const { plane } = window.slipmap;
-      const svg = new DOMParser().parseFromString(plane.svg(), "image/svg+xml").documentElement;
+      const { SvgPen } = await import("./pen.js");
+      const pen = new SvgPen(plane.canvas, [plane.canvas.clientWidth, plane.canvas.clientHeight]);
+      plane.drawWith(pen);
+      const svg = new DOMParser().parseFromString(pen.file(), "image/svg+xml").documentElement;
       document.body.append(svg);
       const [box, list] = [svg.getBoundingClientRect(), [...svg.querySelectorAll("text")]];
       const found = {

@@ -43,6 +43,9 @@ const shown = (page) =>
     return {
       cells: await hash(plane.cells),
       abscissas: await hash(plane.others.abscissa),
+      // Colours, scales and words of the legend.
+      shown: plane.shown,
+      legend: document.getElementById("legend").innerText,
       curves: await Promise.all(plane.curves.map(({ values }) => hash(values))),
       words: document.getElementById("point").innerText,
       vc: document.getElementById("vc").innerText,

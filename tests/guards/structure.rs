@@ -4,9 +4,9 @@ mod uses;
 
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 17] = [
-    "text", "model", "linear", "slip", "critical", "setting", "fit", "answers", "sweep", "explore",
-    "store", "maps", "report", "letter", "queue", "serve", "cli",
+const LAYERS: [&str; 18] = [
+    "text", "model", "linear", "slip", "critical", "setting", "fit", "answers", "sweep", "meaning",
+    "explore", "store", "maps", "report", "letter", "queue", "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
 const ROOMS: [&str; 10] = [

@@ -6,6 +6,7 @@
 
 mod brute;
 mod decoded;
+mod told;
 
 use std::fs;
 use std::io::{Read, Write};

@@ -39,6 +39,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
+pub(crate) use canvas::{BEYOND, UNREAD};
 pub(crate) use pixels::{Scale, Stretch, finite};
 pub(crate) use source::Facts;
 pub(crate) use window::{Asked, Numbers, Shot, Shown};

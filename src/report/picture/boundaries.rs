@@ -2,7 +2,6 @@
 
 use super::choice;
 use super::clip;
-use super::colour::{self, INK, PAPER, Rgb, SOFT_INK};
 use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
 use super::error::PictureError;
@@ -12,13 +11,14 @@ use super::legend::{Legend, Swatch};
 use super::options::PictureOptions;
 use super::page::{self, SMALL};
 use super::panels::{Panel, Panels, Words, fitting_across, fitting_up};
-use super::scale::Scale;
 use super::scene::{Align, Mark, Point, Scene};
 use super::stable_area::{Region, regions, stable_throughout};
 use super::symbols;
 use super::text::{Rich, axis_title, number, suffix};
 use super::view::View;
 use crate::linear::curves::{CurvePiece, StableSide};
+use crate::meaning::colour::{self, INK, PAPER, Rgb, SOFT_INK};
+use crate::meaning::scale::Scale;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
 

@@ -3,6 +3,7 @@
 use super::error::PictureError;
 use super::options::{Named, PictureOptions};
 use super::text::{self, Rich};
+use crate::meaning::first;
 use crate::report::visible::visible_line;
 use crate::setting::Field;
 use crate::store::MapFile;
@@ -18,7 +19,7 @@ pub(super) struct Choice {
 impl Choice {
     pub(super) fn of(map: &MapFile, options: &PictureOptions) -> Result<Self, PictureError> {
         let chosen = options.field.or_else(|| named(map, options));
-        let field = chosen.unwrap_or_else(|| default_field(map));
+        let field = chosen.unwrap_or_else(|| first::field(None, map.fields()));
         if !map.fields().contains(&field) {
             let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
             return Err(PictureError::NoSuchField {
@@ -34,7 +35,7 @@ impl Choice {
 
     /// Whether curves of the map show as much as its cells.
     pub(super) fn leaves_curves(&self, map: &MapFile) -> bool {
-        self.by_default && says_more(map).is_none()
+        self.by_default && first::says_more(map.fields()).is_none()
     }
 
     /// The fields of one line picture: this one and, if it is shown by default and without
@@ -61,28 +62,6 @@ pub(super) fn named(map: &MapFile, options: &PictureOptions) -> Option<Field> {
         Named::Nothing => None,
     };
     named.filter(|field| map.fields().contains(field))
-}
-
-/// A field of the map that shows more than the stability of sliding: the regime, the velocity above
-/// which sliding is smooth, the critical velocity, the outcome, or the spectral abscissa.
-fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [
-        Field::Regime,
-        Field::VSmooth,
-        Field::Vc,
-        Field::Outcome,
-        Field::Abscissa,
-    ];
-    more.into_iter().find(|field| map.fields().contains(field))
-}
-
-/// The most informative field of the map.
-fn default_field(map: &MapFile) -> Field {
-    says_more(map)
-        .or_else(|| map.stability_field())
-        // Reasons come last: most cells are not special.
-        .or_else(|| map.fields().iter().copied().find(|f| *f != Field::Reason))
-        .unwrap_or(Field::NUnstable)
 }
 
 /// The most characters of a title.
@@ -125,7 +104,7 @@ fn shortened(text: &str) -> String {
 /// the sweep has a title or not.
 pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
     let unit = map.field_unit(field);
-    let shown = named(map, options).unwrap_or_else(|| default_field(map));
+    let shown = first::field(named(map, options), map.fields());
     let about = shortened(&map.long_name(field));
     match title(map, options) {
         title if field != shown && options.title.is_none() => {

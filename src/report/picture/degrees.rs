@@ -1,9 +1,9 @@
 //! Curves of degrees of stability: dashed, with shorter dashes for larger σ.
 
-use super::colour::Rgb;
 use super::legend::Swatch;
 use super::scene::{Point, Scene};
 use super::text::{Rich, number, suffix};
+use crate::meaning::colour::Rgb;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
 

@@ -1,14 +1,14 @@
 //! A friction law among the points to which it was fitted, with what they leave open of it.
 
-use super::colour::{self, SOFT_INK, STABLE_TINT};
 use super::legend::{Legend, Swatch};
 use super::page;
 use super::panels::Panel;
-use super::scale::Scale;
 use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, suffix};
 use crate::fit::FittedLaw;
+use crate::meaning::colour::{self, SOFT_INK, STABLE_TINT};
+use crate::meaning::scale::Scale;
 use crate::report::numbers::with_error;
 use crate::setting::Parameter;
 use crate::setting::measured::{Direction, MeasuredPoint};

@@ -132,8 +132,8 @@ mod tests {
     use super::*;
     use crate::linear::Direction;
     use crate::linear::curves::{CurveKind, StableSide, Vertex};
+    use crate::meaning::scale::Scale;
     use crate::report::picture::page::Area;
-    use crate::report::picture::scale::Scale;
 
     /// Three by three cells, stable above a diagonal.
     #[test]

@@ -1,52 +1,17 @@
-//! Cells that show no value: their colours, and the hatching over them.
+//! The hatching over cells that show no value.
 
-use super::colour::{self, Rgb};
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Point, Scene};
-use crate::report::known::Gap;
+use crate::meaning::colour;
+use crate::meaning::gap::{Gap, Run};
 
 /// Distance between the lines, and their width, in units of the picture.
 const SPACING: f64 = 12.0;
 const WIDTH: f64 = 1.8;
 
-/// Direction of lines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-enum Run {
-    Rising,
-    Falling,
-    Upright,
-    Level,
-}
-
-/// The lines over cells with a gap; none where the colour is enough.
-fn runs(gap: Gap) -> &'static [Run] {
-    match gap {
-        Gap::NotConverged => &[Run::Rising],
-        Gap::Marginal => &[Run::Falling],
-        Gap::Disagree => &[Run::Rising, Run::Falling],
-        Gap::Undecided => &[Run::Upright],
-        Gap::NoValue => &[Run::Level],
-        Gap::OutsideModel => &[Run::Level, Run::Rising],
-        Gap::NotComputed => &[Run::Upright, Run::Level],
-        Gap::LiftsOff | Gap::Persists => &[],
-    }
-}
-
-/// The colour of cells with a gap, below the lines.
-pub(super) fn ground(gap: Gap) -> Rgb {
-    match gap {
-        Gap::LiftsOff => colour::LIFTS_OFF,
-        Gap::Persists => colour::PERSISTS,
-        Gap::NoValue => colour::NO_VALUE,
-        Gap::OutsideModel => colour::OUTSIDE_MODEL,
-        Gap::NotComputed => colour::PAPER,
-        Gap::NotConverged | Gap::Disagree | Gap::Marginal | Gap::Undecided => colour::UNKNOWN,
-    }
-}
-
 /// Draws the lines over cells between these edges.
 pub(super) fn draw(columns: &[f64], rows: &[f64], gaps: &[Option<Gap>], scene: &mut Scene) {
-    let hatched = |gap: &Option<Gap>| gap.filter(|gap| !runs(*gap).is_empty());
+    let hatched = |gap: &Option<Gap>| gap.filter(|gap| !gap.lines().is_empty());
     if !gaps.iter().any(|gap| hatched(gap).is_some()) {
         return;
     }
@@ -73,7 +38,7 @@ pub(super) fn draw(columns: &[f64], rows: &[f64], gaps: &[Option<Gap>], scene: &
 pub(super) fn fill(a: Point, b: Point, gap: Gap, scene: &mut Scene) {
     let (near, far) = ((a.0.min(b.0), a.1.min(b.1)), (a.0.max(b.0), a.1.max(b.1)));
     let u = scene.unit();
-    for &run in runs(gap) {
+    for &run in gap.lines() {
         for line in lines(near, far, run, SPACING * u) {
             match run {
                 Run::Rising | Run::Falling => {
@@ -149,17 +114,5 @@ mod tests {
         let gaps = [None, Some(Gap::NotConverged), Some(Gap::LiftsOff)];
         draw(&[10.0, 10.1, 10.2, 10.3], &[20.0, 20.1], &gaps, &mut scene);
         assert!(matches!(scene.marks[..], [Mark::Path { .. }]));
-    }
-
-    #[test]
-    fn no_two_gaps_look_alike() {
-        for (i, a) in Gap::ALL.into_iter().enumerate() {
-            for b in &Gap::ALL[..i] {
-                assert!(
-                    ground(a) != ground(*b) || runs(a) != runs(*b),
-                    "{a:?} {b:?}"
-                );
-            }
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Heat maps of a field: a panel for each value of the axis outside the plane.
 
 use super::choice;
-use super::colour::INK;
 use super::degrees::Degrees;
 use super::error::PictureError;
 use super::fitted::{Sides, fitted};
@@ -11,7 +10,6 @@ use super::kinds;
 use super::options::PictureOptions;
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
-use super::scale::Scale;
 use super::scene::{Mark, Scene};
 use super::speed;
 use super::stable_area::stable_throughout;
@@ -20,6 +18,9 @@ use super::text::{Rich, axis_title};
 use super::traced::Curves;
 use super::view::View;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::meaning::colour::INK;
+use crate::meaning::gap::Gap;
+use crate::meaning::scale::Scale;
 use crate::report::known::Known;
 use crate::setting::Field;
 use crate::setting::field::Storage;
@@ -165,7 +166,7 @@ fn draw_cells(panel: &Panel, known: &Known, key: &Key, scene: &mut Scene) {
     let columns: Vec<f64> = columns.map(|x| panel.across(x)).collect();
     let rows: Vec<f64> = rows.map(|y| panel.up(y)).collect();
     let cells = known.plane.cells.iter().zip(&known.gaps);
-    let colours = cells.map(|(value, gap)| gap.map_or_else(|| key.colour(*value), hatch::ground));
+    let colours = cells.map(|(value, gap)| gap.map_or_else(|| key.colour(*value), Gap::ground));
     scene.marks.push(Mark::Cells {
         columns: columns.clone(),
         rows: rows.clone(),

@@ -6,8 +6,8 @@
 
 use super::page::{Area, SMALL};
 use super::panels::Panel;
-use super::scale::Scale;
 use super::stable_area::Region;
+use crate::meaning::scale::Scale;
 
 /// Side of the squares into which a panel is divided, in units of the picture.
 const SQUARE: f64 = 10.0;

@@ -1,25 +1,25 @@
 //! The key of a heat map: the colour of every value of a field, and the bar or list that explains
 //! it.
 
-use std::collections::BTreeSet;
-
-use super::colour::{self, INK, LAST_COUNT, Rgb};
 use super::error::PictureError;
 use super::legend::{Bar, Legend, Swatch};
 use super::options::PictureOptions;
 use super::page::Area;
-use super::paint::Paint;
 use super::scene::Scene;
 use super::text::{Rich, field_name, suffix};
-use crate::report::known::{Gap, Known};
+use crate::meaning::colour::{INK, Rgb};
+use crate::meaning::gap::Gap;
+use crate::meaning::legend::{self as meaning, Entry, Mark};
+use crate::meaning::paint::{Paint, Shades};
+use crate::report::known::Known;
 use crate::setting::Field;
-use crate::setting::source::{OfRoots, Source};
 
 /// Width of boundary lines.
 pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
 /// The meaning of a field's colours, in the panels and beside them.
 pub(super) struct Key {
     paint: Paint,
+    shades: Shades,
     /// Lines above the bar.
     heading: Vec<Rich>,
     /// The list below the bar, or alone where there is no bar.
@@ -39,19 +39,19 @@ impl Key {
         options: &PictureOptions,
     ) -> Result<Self, PictureError> {
         let values: Vec<f64> = planes.iter().flat_map(Known::values).collect();
-        let paint = Paint::of(field, &values, options)?;
-        let mut legend = match paint {
-            Paint::Counts => counts(&values),
-            Paint::Kinds(field) => kinds(field, &values),
-            _ => Legend::default(),
+        let paint = Paint::asked(field, &values, options)?;
+        let list = meaning::list_heading(field, &paint);
+        let mut legend = Legend {
+            heading: list.map(Rich::plain).into_iter().collect(),
+            entries: drawn(meaning::entries(field, &paint, &values)),
         };
-        legend.entries.extend(paint.beyond(field, &values));
         legend.entries.extend(of_gaps(field, planes));
         if curves {
             let swatch = Swatch::Line(INK, BOUNDARY_WIDTH, None);
             legend.entries.push((swatch, Rich::plain("boundary")));
         }
         Ok(Self {
+            shades: paint.shades(),
             paint,
             heading: heading(field, unit),
             legend,
@@ -66,7 +66,7 @@ impl Key {
 
     /// The colour of a value.
     pub(super) fn colour(&self, value: f64) -> Rgb {
-        self.paint.colour(value)
+        self.shades.colour(value)
     }
 
     /// Width in pixels.
@@ -102,93 +102,38 @@ impl Key {
 
 /// Entries for the kinds of missing values in some planes.
 pub(super) fn of_gaps(field: Field, planes: &[Known]) -> Vec<(Swatch, Rich)> {
-    let there = |gap: &Gap| planes.iter().any(|plane| plane.gaps.contains(&Some(*gap)));
-    let entry = |gap: Gap| (Swatch::Gap(gap), Rich::plain(gap.words(field)));
-    Gap::ALL.into_iter().filter(there).map(entry).collect()
+    let there = |gap: Gap| planes.iter().any(|plane| plane.gaps.contains(&Some(gap)));
+    drawn(meaning::of_gaps(field, there))
+}
+
+/// Entries as they are drawn.
+fn drawn(entries: Vec<Entry>) -> Vec<(Swatch, Rich)> {
+    let entry = |entry: Entry| {
+        let swatch = match entry.mark {
+            Mark::Colour(colour) => Swatch::Box(colour),
+            Mark::Gap(gap) => Swatch::Gap(gap),
+        };
+        let text = match entry.formula {
+            true => Rich::default().and_formula(&entry.text),
+            false => Rich::plain(&entry.text),
+        };
+        (swatch, text)
+    };
+    entries.into_iter().map(entry).collect()
 }
 
 /// The field's name and, if it has two sides, which of them is stable.
 fn heading(field: Field, unit: &str) -> Vec<Rich> {
-    let mut lines = vec![field_name(field).and(&suffix(unit, " (", ")"))];
-    let side = match field.source() {
-        Source::Roots(OfRoots::Derivative(_)) => Some("faster decay below 0"),
-        _ if field.tells_stable(1.0) == Some(false) => Some("stable below 0"),
-        _ if field.tells_stable(-1.0) == Some(false) => Some("stable above 0"),
-        _ => None,
-    };
-    lines.extend(side.map(Rich::plain));
-    lines
-}
-
-/// The numbers of unstable roots that occur.
-fn counts(values: &[f64]) -> Legend {
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let there: BTreeSet<usize> = finite().map(colour::class_of_count).collect();
-    let open = finite().any(|v| v > LAST_COUNT as f64);
-    let name = |class: usize| match class {
-        0 => "0, stable".to_owned(),
-        LAST_COUNT if open => format!("{class} or more"),
-        _ => class.to_string(),
-    };
-    let entry = |class: usize| {
-        let swatch = Swatch::Box(colour::of_count(class as f64));
-        (swatch, Rich::plain(&name(class)))
-    };
-    Legend {
-        heading: vec![Rich::plain("unstable roots")],
-        entries: there.into_iter().map(entry).collect(),
-    }
-}
-
-/// The meaning of a kind of a field, where its name alone is not clear.
-fn in_words(field: Field, name: &str) -> String {
-    let words = match (field, name) {
-        (Field::Regime, "stable") => "stable, no stick-slip",
-        (Field::Regime, "bistable") => "bistable: stick-slip, too",
-        (Field::Regime, "lift-off") => "stable, but lifts off",
-        _ => name,
-    };
-    words.into()
-}
-
-/// The kinds that occur, or the small counts.
-fn kinds(field: Field, values: &[f64]) -> Legend {
-    let names = field.kinds().unwrap_or_default();
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let most = finite().fold(0.0, f64::max) as usize;
-    let last = colour::last_of_few();
-    let name = |number: usize| match names.get(number) {
-        Some(name) => in_words(field, name),
-        None if number == last && most > last => format!("{number} or more"),
-        None => number.to_string(),
-    };
-    // Larger counts share a colour.
-    let largest = if names.is_empty() {
-        most.min(last)
-    } else {
-        most
-    };
-    let there = |number: usize| match number == largest {
-        true => finite().any(|v| v >= number as f64),
-        false => values.contains(&(number as f64)),
-    };
-    Legend {
-        heading: vec![Rich::plain(field.short_name())],
-        entries: (0..=largest)
-            .filter(|number| there(*number))
-            .map(|number| {
-                let swatch = Swatch::Box(colour::of_kind(field, number as f64));
-                (swatch, Rich::plain(&name(number)))
-            })
-            .collect(),
-    }
+    let name = field_name(field).and(&suffix(unit, " (", ")"));
+    let side = meaning::side(field).map(Rich::plain);
+    [name].into_iter().chain(side).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::picture::gradient::ColourMap;
-    use crate::report::picture::hatch;
+    use crate::meaning::colour;
+    use crate::meaning::gradient::ColourMap;
     use crate::setting::field::Storage;
     use crate::setting::regime_at_v0::RegimeAtV0;
     use crate::slip::outcome::Outcome;
@@ -278,7 +223,7 @@ mod tests {
             let key = of_plane(field, known);
             let colour = |swatch: &Swatch| match swatch {
                 Swatch::Box(colour) => *colour,
-                Swatch::Gap(gap) => hatch::ground(*gap),
+                Swatch::Gap(gap) => gap.ground(),
                 other => panic!("{other:?}"),
             };
             let mut said: Vec<Rgb> = key.legend.entries.iter().map(|e| colour(&e.0)).collect();

@@ -1,9 +1,9 @@
 //! Boundaries other than pairs of roots on the axis: dashed, and named in the legend.
 
-use super::colour::Rgb;
 use super::legend::Swatch;
 use super::text::Rich;
 use crate::linear::curves::{CurveKind, CurvePiece};
+use crate::meaning::colour::Rgb;
 
 /// Dashes (length, gap) of a boundary; none for a solid line.
 pub(super) fn dash(kind: CurveKind) -> Option<(f64, f64)> {

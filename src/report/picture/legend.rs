@@ -1,13 +1,13 @@
 //! The meaning of colours, beside the panels.
 
-use super::colour::{INK, Rgb, SOFT_INK};
 use super::hatch;
 use super::page::{Area, SMALL};
-use super::scale::Scale;
 use super::scene::{Align, Scene};
 use super::symbols::Symbol;
 use super::text::Rich;
-use crate::report::known::Gap;
+use crate::meaning::colour::{INK, Rgb, SOFT_INK};
+use crate::meaning::gap::Gap;
+use crate::meaning::scale::Scale;
 
 const SWATCH: f64 = 44.0;
 const GAP: f64 = 14.0;
@@ -87,7 +87,7 @@ impl Legend {
                 }
                 Swatch::Symbol(symbol) => symbol.draw((left + 0.5 * (right - left), middle), scene),
                 Swatch::Gap(gap) => {
-                    scene.rect(from, to, hatch::ground(gap));
+                    scene.rect(from, to, gap.ground());
                     hatch::fill(from, to, gap, scene);
                     scene.outline(from, to, SOFT_INK, u);
                 }

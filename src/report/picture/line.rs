@@ -3,7 +3,6 @@
 use super::areas;
 use super::choice;
 use super::clip::between;
-use super::colour::{self, Rgb, SOFT_INK, STABLE_TINT};
 use super::error::PictureError;
 use super::hatch;
 use super::legend::{Legend, Swatch};
@@ -18,7 +17,9 @@ use super::stable_line;
 use super::text::{Rich, field_name, field_title, number, suffix};
 use super::value_scale;
 use super::view::View;
-use crate::report::known::{Gap, Known};
+use crate::meaning::colour::{self, Rgb, SOFT_INK, STABLE_TINT};
+use crate::meaning::gap::Gap;
+use crate::report::known::Known;
 use crate::setting::Field;
 use crate::setting::field::Storage;
 use crate::store::map_file::MapAxis;
@@ -295,7 +296,7 @@ fn draw_gaps(panel: &Panel, line: &Graph, scene: &mut Scene) {
         let from = (panel.across(edges[columns.0]), panel.area.top);
         let to = (panel.across(edges[columns.1]), panel.area.bottom);
         let (from, to) = ((from.0.min(to.0), from.1), (from.0.max(to.0), to.1));
-        scene.rect(from, to, hatch::ground(gap));
+        scene.rect(from, to, gap.ground());
         hatch::fill(from, to, gap, scene);
     }
 }
@@ -338,8 +339,8 @@ fn add_gaps(legend: &mut Legend, lines: &[Graph]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::picture::colour::PAPER;
-    use crate::report::picture::scale::Scale;
+    use crate::meaning::colour::PAPER;
+    use crate::meaning::scale::Scale;
     use crate::report::picture::scene::Mark;
 
     /// A number that is not known is no point of the line.

@@ -6,10 +6,11 @@
 //! ```
 //!
 //! - `options`, `choice`: what is requested, and what is shown by default; `file`: formats
-//! - `key`, `paint`: the meaning of colours in a heat map, and the colours of values; `hatch`:
-//!   cells without a value; `fitted`: cells along an exact boundary
-//! - `page`, `panels`, `inset`, `legend`: layout; `scale`, `value_scale`, `ticks`: from values to
-//!   places; `clip`, `areas`, `off_scale`: lines at edges, names and values beyond
+//! - `key`: what stands beside a heat map; `paint`: colours as requested; `hatch`: lines over cells
+//!   without a value; `fitted`: cells along an exact boundary. What colours and words there are is
+//!   in `src/meaning`
+//! - `page`, `panels`, `inset`, `legend`: layout; `value_scale`: from values to places; `clip`,
+//!   `areas`, `off_scale`: lines at edges, names and values beyond
 //! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
 //!   them, and free places on curves
 //! - `fit`: a friction law among the points to which it was fitted
@@ -17,7 +18,7 @@
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
-//! - `colour`, `gradient`, `text`, `font`: styles
+//! - `text`, `font`: styles
 //! - `boundaries`: the boundaries of stability in one plane, with a colour for each value of the
 //!   axis outside it
 //! - `error`: why a picture could not be drawn
@@ -38,7 +39,6 @@ mod areas;
 mod boundaries;
 mod choice;
 mod clip;
-mod colour;
 mod curve_labels;
 mod degrees;
 mod error;
@@ -47,7 +47,6 @@ mod file;
 mod fit;
 mod fitted;
 mod font;
-mod gradient;
 mod hatch;
 mod heat;
 mod inset;
@@ -64,7 +63,6 @@ mod pdf;
 mod rectangles;
 mod render;
 mod roots;
-mod scale;
 mod scene;
 mod speed;
 mod stable_area;
@@ -72,7 +70,6 @@ mod stable_line;
 mod stack;
 mod symbols;
 mod text;
-mod ticks;
 mod trace;
 mod traced;
 mod value_scale;
@@ -86,6 +83,7 @@ mod told_apart;
 use std::path::Path;
 
 use crate::answers::Trace;
+pub use crate::meaning::gradient::ColourMap;
 use crate::report::visible::visible_line;
 use crate::setting::CaseSpec;
 use crate::store::{MapFile, TraceFile};
@@ -95,7 +93,6 @@ use file::{Format, Origin};
 pub use file::{Picture, is_name, named_in};
 #[cfg(feature = "fit")]
 pub use fit::FitPicture;
-pub use gradient::ColourMap;
 pub use options::{Named, PictureKind, PictureOptions};
 pub use roots::PointPicture;
 use scene::Scene;

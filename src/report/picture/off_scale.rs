@@ -1,14 +1,14 @@
 //! Values along a line that have no place on its scale: values beyond its ends, infinite ones and,
 //! on a logarithmic scale, zeros. They are drawn as bars at the edge of the panel.
 
-use super::colour::Rgb;
 use super::legend::Swatch;
-use super::paint::at_zero;
 use super::panels::Panel;
-use super::scale::Scale;
 use super::scene::Scene;
 use super::text::{Rich, number};
-use crate::report::known::Gap;
+use crate::meaning::colour::Rgb;
+use crate::meaning::gap::Gap;
+use crate::meaning::paint::at_zero;
+use crate::meaning::scale::Scale;
 use crate::setting::Field;
 
 /// Height of a bar, in units of the picture.
@@ -127,9 +127,9 @@ pub(super) fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::picture::colour::INK;
+    use crate::meaning::colour::INK;
+    use crate::meaning::scale::Scale;
     use crate::report::picture::page::Area;
-    use crate::report::picture::scale::Scale;
     use crate::report::picture::scene::Mark;
 
     #[test]

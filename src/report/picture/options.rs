@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::error::PictureError;
-use super::gradient::ColourMap;
+use crate::meaning::gradient::ColourMap;
 use crate::setting::Field;
 use crate::setting::quantity::Quantity;
 

@@ -1,8 +1,8 @@
 //! The page: title, notes, and the remaining area.
 
-use super::colour::{INK, SOFT_INK};
 use super::scene::{Align, Scene};
 use super::text::Rich;
+use crate::meaning::colour::{INK, SOFT_INK};
 
 /// Font sizes in units, see [`Scene::unit`].
 pub(super) const TITLE: f64 = 34.0;

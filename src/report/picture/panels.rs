@@ -1,11 +1,11 @@
 //! Panels side by side with common axes: one for a single plane, several for small multiples.
 
-use super::colour::{GRID, INK};
 use super::page::{Area, LABEL, SMALL};
-use super::scale::Scale;
 use super::scene::{Align, Point, Scene};
 use super::text::Rich;
-use super::ticks::Tick;
+use crate::meaning::colour::{GRID, INK};
+use crate::meaning::scale::Scale;
+use crate::meaning::ticks::Tick;
 
 const TICK: f64 = 8.0;
 const MINOR_TICK: f64 = 4.0;

@@ -5,11 +5,11 @@ use plotters::backend::{BitMapBackend, DrawingBackend, RGBPixel, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
 
-use super::colour::Rgb;
 use super::error::PictureError;
 use super::font;
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
+use crate::meaning::colour::Rgb;
 
 /// Bitmaps are drawn larger by this factor and averaged, for smooth edges.
 const OVERSAMPLING: u32 = 3;
@@ -118,7 +118,7 @@ impl<B: DrawingBackend> Pen<B> {
     fn paint(&mut self, scene: &Scene) -> Drawn {
         let size = scene.size;
         let paper = (f64::from(size.0), f64::from(size.1));
-        self.rect((0.0, 0.0), paper, super::colour::PAPER, 1.0)?;
+        self.rect((0.0, 0.0), paper, crate::meaning::colour::PAPER, 1.0)?;
         for mark in &scene.marks {
             match mark {
                 Mark::Rect {

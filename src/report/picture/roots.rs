@@ -1,17 +1,17 @@
 //! A point of parameter space: its characteristic roots in the complex plane, and the number of
 //! unstable roots over the delay.
 
-use super::colour::{self, INK, Rgb, SOFT_INK, STABLE, UNSTABLE};
 use super::legend::{Legend, Swatch};
 use super::page::{self, Area};
 use super::panels::Panel;
-use super::scale::Scale;
 use super::scene::Scene;
 use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, number, suffix};
 use super::value_scale;
 use crate::explore::along_delay::AlongDelay;
 use crate::explore::point::BlockPoint;
+use crate::meaning::colour::{self, INK, Rgb, SOFT_INK, STABLE, UNSTABLE};
+use crate::meaning::scale::Scale;
 use crate::setting::Parameter;
 use crate::setting::units::Units;
 use crate::text::finite;

@@ -1,7 +1,7 @@
 //! The contents of a picture, in pixels from its upper left corner, independent of rendering.
 
-use super::colour::{PAPER, Rgb};
 use super::text::Rich;
+use crate::meaning::colour::{PAPER, Rgb};
 
 /// A place in pixels: to the right, downwards.
 pub(super) type Point = (f64, f64);

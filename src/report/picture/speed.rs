@@ -1,7 +1,8 @@
 //! Delays that are periods, shown as speeds: stability lobes in the form that engineers use.
 
-use super::scale::Scale;
 use super::text::{Rich, axis_title};
+use crate::meaning::scale::Scale;
+use crate::meaning::scale::has_speeds;
 use crate::setting::Parameter;
 use crate::setting::system::SpeedAxis;
 use crate::store::MapFile;
@@ -10,8 +11,8 @@ use crate::store::map_file::MapAxis;
 /// The speed shown for an axis, if the map's system says that its delay is a period.
 fn speed_of<'m>(map: &'m MapFile, axis: &MapAxis) -> Option<&'m SpeedAxis> {
     let speed = map.system()?.speed_axis.as_ref()?;
-    let shown = Scale::of_speeds(&axis.values, speed.unit).is_some();
-    (shown && axis.parameter == Parameter::Tau).then_some(speed)
+    let shown = axis.parameter == Parameter::Tau && has_speeds(&axis.values);
+    shown.then_some(speed)
 }
 
 /// Whether the delay of a map is shown as a speed, and therefore from left to right.

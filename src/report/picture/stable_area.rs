@@ -128,8 +128,8 @@ mod tests {
     use super::*;
     use crate::linear::Direction;
     use crate::linear::curves::CurveKind;
+    use crate::meaning::scale::Scale;
     use crate::report::picture::page::Area;
-    use crate::report::picture::scale::Scale;
 
     fn panel() -> Panel {
         Panel {

@@ -1,13 +1,14 @@
 //! Stable stretches along a line: between the boundaries in the map, or else between the edges of
 //! its cells.
 
-use super::colour::STABLE_TINT;
 use super::error::PictureError;
 use super::panels::Panel;
 use super::scene::Scene;
 use super::view::View;
 use crate::linear::curves::{CurvePiece, Vertex};
-use crate::report::known::{Gap, Known};
+use crate::meaning::colour::STABLE_TINT;
+use crate::meaning::gap::Gap;
+use crate::report::known::Known;
 use crate::store::{MapFile, StoreError};
 
 /// Relative distance from the end of an axis at which curves are read there: they end at its last

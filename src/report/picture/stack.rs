@@ -1,12 +1,12 @@
 //! Panels above one another, with a common axis from left to right and their own scales upwards.
 
-use super::colour::INK;
 use super::page::{Area, LABEL, SMALL};
 use super::panels::{Panel, fitting_across, fitting_up, inside, left_margin};
-use super::scale::Scale;
 use super::scene::{Align, Scene};
 use super::text::Rich;
-use super::ticks::Tick;
+use crate::meaning::colour::INK;
+use crate::meaning::scale::Scale;
+use crate::meaning::ticks::Tick;
 
 /// Space between panels, relative to the font of numbers.
 const GAP: f64 = 0.55;

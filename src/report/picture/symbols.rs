@@ -1,11 +1,11 @@
 //! Places in a plane marked by a symbol: steady sliding, the best setting.
 
-use super::colour::{INK, PAPER};
 use super::legend::Swatch;
 use super::panels::Panel;
 use super::scene::{Point, Scene};
 use super::text::Rich;
 use super::view::View;
+use crate::meaning::colour::{INK, PAPER};
 use crate::setting::Parameter;
 use crate::setting::values::Setting;
 use crate::store::{MapFile, StoreError};

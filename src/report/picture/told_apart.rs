@@ -13,11 +13,11 @@ use palette::color_difference::Ciede2000;
 use palette::convert::FromColorUnclamped;
 use palette::{Lab, LinSrgb, Srgb};
 
-use super::colour::{
+use crate::meaning::colour::{
     self, ABOVE, BELOW, HATCH, INFINITE, INK, LAST_COUNT, LIFTS_OFF, MINUS_INFINITE, NO_VALUE,
     PAPER, PERSISTS, Rgb, STABLE, UNKNOWN, UNSTABLE, ZERO,
 };
-use super::gradient::ColourMap;
+use crate::meaning::gradient::ColourMap;
 use crate::setting::Field;
 use crate::setting::field::OUTCOMES;
 

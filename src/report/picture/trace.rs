@@ -1,16 +1,16 @@
 //! A motion over time, and its velocity over the elongation.
 
-use super::colour::{self, Rgb, SOFT_INK, STUCK, UNSTABLE};
 use super::legend::{Legend, Swatch};
 use super::page::{self, Area};
 use super::panels::Panel;
-use super::scale::Scale;
 use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
 use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
 use crate::answers::Trace;
 use crate::answers::trace::{Sample, TraceEvent};
+use crate::meaning::colour::{self, Rgb, SOFT_INK, STUCK, UNSTABLE};
+use crate::meaning::scale::Scale;
 use crate::setting::{CaseSpec, Parameter};
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;

@@ -2,8 +2,9 @@
 
 use super::error::PictureError;
 use super::options::PictureOptions;
-use super::paint::{DECADES, at_zero, logarithmic};
-use super::scale::Scale;
+use super::paint::logarithmic;
+use crate::meaning::paint::{DECADES, at_zero};
+use crate::meaning::scale::Scale;
 use crate::setting::Field;
 use crate::setting::field::{Spread, Storage};
 

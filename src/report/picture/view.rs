@@ -3,6 +3,7 @@
 use super::error::PictureError;
 use super::speed;
 use super::text::{Rich, assignment};
+use crate::meaning::first;
 use crate::setting::Parameter;
 use crate::setting::axis::nearest;
 use crate::setting::quantity::Quantity;
@@ -38,20 +39,13 @@ impl View {
         let free: Vec<usize> = (0..map.axes().len())
             .filter(|&a| asked[a].is_none() && map.axes()[a].values.len() > 1)
             .collect();
-        let (x, y) = match (map.boundary_plane(), free.as_slice()) {
-            (_, []) => return Err(PictureError::NothingToDraw),
-            (_, &[x]) => (x, None),
-            (Some((p, q)), free) if free.contains(&p) && free.contains(&q) => {
-                match speed::is_shown(map, &map.axes()[q]) {
-                    true => (q, Some(p)),
-                    false => (p, Some(q)),
-                }
-            }
-            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[a]) => (a, Some(b)),
-            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[b]) => (b, Some(a)),
-            (_, &[.., a, b]) if map.axes()[a].parameter == Parameter::Tau => (b, Some(a)),
-            (_, &[.., a, b]) => (a, Some(b)),
+        let axes = first::Axes {
+            free: &free,
+            boundary: map.boundary_plane(),
+            is_delay: &|a| map.axes()[a].parameter == Parameter::Tau,
+            is_speed: &|a| speed::is_shown(map, &map.axes()[a]),
         };
+        let (x, y) = axes.plane().ok_or(PictureError::NothingToDraw)?;
         let outside = |a: &usize| *a != x && Some(*a) != y;
         let several = several(map, &asked)?;
         let along = several.or_else(|| free.iter().copied().find(outside));
@@ -149,14 +143,8 @@ impl View {
             }
         }
         let units = map.units();
-        // Only values that differ from the default, and the gains: a gain of 0 means that there is
-        // no such control.
         for (parameter, value) in map.scalars() {
-            let gain = matches!(
-                parameter,
-                Quantity::Known(Parameter::AlphaV | Parameter::AlphaN)
-            );
-            if gain || parameter.default_value() != Some(value) {
+            if first::is_told(&parameter, value) {
                 notes.push(assignment(&parameter, value, &parameter.unit(&units)));
             }
         }

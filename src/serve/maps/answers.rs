@@ -5,13 +5,16 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::described::{CellValue, CurvesHead, MapCell, WindowAt, WindowAxis, WindowHead};
+use super::description::unit;
 use super::frames::{CellQuery, CurvesQuery, MOST_PIXELS, Refused, ScaleName, WindowQuery};
 use crate::explore::chart::ChartCurve;
 use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::Arrays;
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
-use crate::maps::look::{Asked, Facts, Look, Numbers, Scale, Shot, Shown, Stretch};
+use crate::maps::look::{Asked, BEYOND, Facts, Look, Numbers, Scale, Shot, Shown, Stretch, UNREAD};
+use crate::meaning::gap::Rule;
+use crate::meaning::shown::{Cells, Column};
 use crate::setting::Field;
 use crate::setting::field::Storage;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
@@ -117,18 +120,55 @@ pub(super) fn window(
 ) -> Result<[Vec<u8>; 2], Refused> {
     let begun = Instant::now();
     let asked = asked(look.facts(), query)?;
-    let view = look.window(&asked, PATIENCE).map_err(Refused::asked)?;
-    let _one = one.lock().unwrap_or_else(PoisonError::into_inner);
+    let read = |asked: &Asked| look.window(asked, PATIENCE).map_err(Refused::asked);
+    let guard = || one.lock().unwrap_or_else(PoisonError::into_inner);
+    let view = read(&asked)?;
+    let held = guard();
     let shot = view.shot(look.facts());
-    encoded(look.facts(), &asked, shot, begun).map_err(Refused::damaged)
+    let rule = Rule::of(asked.field, &look.facts().fields);
+    let Some(field) = rule.why().filter(|_| shot.complete && has_empty(&shot)) else {
+        return encoded(look, &asked, (shot, None), begun).map_err(Refused::damaged);
+    };
+    // The other field is read without the lock.
+    drop(held);
+    let other = read(&Asked {
+        field,
+        ..asked.clone()
+    })?;
+    let _held = guard();
+    let why = Some(other.shot(look.facts()));
+    encoded(look, &asked, (shot, why), begun).map_err(Refused::damaged)
+}
+
+/// Whether each pixel along an axis is the first one that shows its cell.
+fn first_of_cell(axis: &Shown) -> Vec<bool> {
+    let before = std::iter::once(None).chain(axis.index.iter().map(Some));
+    let pixels = axis.index.iter().zip(before);
+    pixels.map(|(cell, before)| before != Some(cell)).collect()
+}
+
+/// Whether some cell that was read has no value.
+fn has_empty(shot: &Shot) -> bool {
+    let values = column(&shot.values);
+    let mut bits = shot.bits.iter().enumerate();
+    bits.any(|(pixel, bits)| bits & (UNREAD | BEYOND) == 0 && values.value(pixel).is_nan())
+}
+
+fn column(numbers: &Numbers) -> Column<'_> {
+    match numbers {
+        Numbers::U8(values) => Column::U8(values),
+        Numbers::U16(values) => Column::U16(values),
+        Numbers::F64(values) => Column::F64(values),
+    }
 }
 
 fn encoded(
-    facts: &Facts,
+    look: &Look,
     asked: &Asked,
-    shot: Shot,
+    (shot, why): (Shot, Option<Shot>),
     begun: Instant,
 ) -> Result<[Vec<u8>; 2], serde_json::Error> {
+    let facts = look.facts();
     let mut arrays = Arrays::default();
     let mut axis = |axis: usize, shown: &Shown| WindowAxis {
         name: facts.axes[axis].parameter.name().to_owned(),
@@ -141,8 +181,24 @@ fn encoded(
         .as_ref()
         .zip(asked.y)
         .map(|(shown, y)| axis(y, shown));
+    let cells = Cells {
+        field: asked.field,
+        unit: &unit(look, asked.field),
+        rule: Rule::of(asked.field, &facts.fields),
+        values: column(&shot.values),
+        status: &shot.status,
+        why: why.as_ref().map(|why| column(&why.values)),
+    };
+    // Many pixels may show the same cell.
+    let [across, up] = [Some(&shot.x), shot.y.as_ref()].map(|axis| axis.map(first_of_cell));
+    let height = up.as_ref().map_or(1, Vec::len).max(1);
+    let first = |axis: &Option<Vec<bool>>, pixel: usize| axis.as_ref().is_none_or(|of| of[pixel]);
+    let (shown, gaps) = cells.shown(
+        |pixel| shot.bits[pixel] & (UNREAD | BEYOND) != 0,
+        |pixel| !first(&across, pixel / height) || !first(&up, pixel % height),
+    );
     let head = WindowHead {
-        complete: shot.complete,
+        complete: shot.complete && why.as_ref().is_none_or(|why| why.complete),
         progress: shot.progress,
         version: shot.version,
         field: asked.field.name(),
@@ -150,13 +206,15 @@ fn encoded(
         y,
         at: at(facts, &asked.at, &[Some(asked.x), asked.y]),
         status: arrays.push_runs(&shot.status),
+        gaps: arrays.push_runs(&gaps),
+        shown,
         bits: arrays.push_runs(&shot.bits),
         values: match shot.values {
             Numbers::U8(values) => arrays.push_runs(&values),
             Numbers::U16(values) => arrays.push_runs(&values),
             Numbers::F64(values) => arrays.push(values),
         },
-        damage: shot.damage,
+        damage: shot.damage.or(why.and_then(|why| why.damage)),
         milliseconds: begun.elapsed().as_secs_f64() * 1e3,
     };
     arrays.parts(&head)

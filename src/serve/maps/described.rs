@@ -8,7 +8,8 @@ use utoipa::ToSchema;
 
 use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::Array;
-use crate::explore::known::KnownField;
+use crate::explore::known::{KnownField, KnownFlag};
+use crate::meaning::shown::Shown;
 
 /// What a window says before its numbers.
 #[derive(Serialize, ToSchema)]
@@ -32,6 +33,10 @@ pub(super) struct WindowHead {
     pub values: Array,
     /// Its status.
     pub status: Array,
+    /// For each pixel 0, or why its cell shows no value: a number of `shown`.
+    pub gaps: Array,
+    /// What the colours of its cells mean.
+    pub shown: Shown,
     /// 1: the pixel hides cells of several values or, where nothing is amiss with its own cell,
     /// some with which something is; 2: it is not read yet; 4: not computed yet; 8: it lies beyond
     /// the axes.
@@ -197,10 +202,12 @@ pub(super) struct MapTold {
     /// The parameters that are no axes.
     pub scalars: Vec<MapScalar>,
     /// The flags of a cell's status.
-    pub flags: Vec<MapFlag>,
+    pub flags: Vec<KnownFlag>,
     /// The axes of the plane of its curves.
     #[schema(required)]
     pub curves_plane: Option<[String; 2]>,
+    /// What a picture of it shows where nobody says more.
+    pub first: MapFirst,
     /// How critical velocities were looked for.
     #[schema(required)]
     pub protocol: Option<&'static str>,
@@ -209,6 +216,18 @@ pub(super) struct MapTold {
     pub program_version: Option<String>,
     /// The sweep file's text.
     pub sweep: String,
+}
+
+/// What a picture of a map shows first.
+#[derive(Serialize, ToSchema)]
+pub(super) struct MapFirst {
+    /// The field, that of `picture` in the sweep if it says so.
+    pub field: &'static str,
+    /// The axis from left to right.
+    pub x: String,
+    /// The axis from bottom to top; none where only one has more than one value.
+    #[schema(required)]
+    pub y: Option<String>,
 }
 
 /// A field of a map.
@@ -234,15 +253,8 @@ pub(super) struct MapScalar {
     pub unit: String,
     /// Its value.
     pub value: f64,
-}
-
-/// A flag of a cell's status.
-#[derive(Serialize, ToSchema)]
-pub(super) struct MapFlag {
-    /// Its bit.
-    pub mask: u8,
-    /// Its name.
-    pub name: &'static str,
+    /// Whether pictures tell it: it is a gain, or not the default.
+    pub told: bool,
 }
 
 /// One cell.

@@ -1,12 +1,13 @@
 //! The description of a map, besides its cells.
 
-use super::described::{self, MapAxisEnds, MapField, MapFlag, MapScalar, MapSummary, MapTold};
-use crate::explore::known::KnownField;
-use crate::linear::status::FLAGS;
+use super::described::{self, MapAxisEnds, MapField, MapFirst, MapScalar, MapSummary, MapTold};
+use crate::explore::known::{KnownField, KnownFlag};
 use crate::maps::look::Look;
-use crate::setting::Field;
+use crate::meaning::first;
+use crate::meaning::scale::has_speeds;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::LIMIT;
+use crate::setting::{Field, Parameter};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::store::tiles::GrowingMap;
@@ -75,14 +76,13 @@ pub(super) fn description(look: &Look) -> MapTold {
             Some(_) => field.described_at_vc(),
             None => (field.long_name(), field.comment()),
         };
-        let of_tiles = |growing: &GrowingMap| field.unit(&growing.plan().spec.units);
         MapField {
             known: KnownField {
                 long_name,
                 comment,
                 ..KnownField::of(field)
             },
-            unit: look.told(|map| map.field_unit(field), of_tiles),
+            unit: unit(look, field),
         }
     };
     MapTold {
@@ -93,9 +93,10 @@ pub(super) fn description(look: &Look) -> MapTold {
         axes: facts.axes.iter().map(axis).collect(),
         fields: facts.fields.iter().map(field).collect(),
         scalars: scalars(look),
-        flags: FLAGS.map(|(mask, name)| MapFlag { mask, name }).into(),
+        flags: KnownFlag::all(),
         curves_plane: plane
             .map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name().to_owned())),
+        first: first(look, plane),
         protocol,
         program_version: look.told(
             |map| map.root_text(root::PROGRAM_VERSION),
@@ -103,6 +104,37 @@ pub(super) fn description(look: &Look) -> MapTold {
         ),
         sweep: sweep(look),
     }
+}
+
+/// What a picture of a map shows first; `boundary` is the plane of its curves.
+fn first(look: &Look, boundary: Option<(usize, usize)>) -> MapFirst {
+    let facts = look.facts();
+    let spec = facts.plan.as_ref().map(|plan| &plan.spec);
+    let system = spec.and_then(|spec| spec.fixed.system());
+    let periods = system.is_some_and(|system| system.speed_axis.is_some());
+    let is_delay = |axis: usize| facts.axes[axis].parameter == Parameter::Tau;
+    let long = |axis: &usize| facts.axes[*axis].values.len() > 1;
+    let free: Vec<usize> = (0..facts.axes.len()).filter(long).collect();
+    let axes = first::Axes {
+        free: &free,
+        boundary,
+        is_delay: &is_delay,
+        is_speed: &|axis| periods && is_delay(axis) && has_speeds(&facts.axes[axis].values),
+    };
+    let (x, y) = axes.plane().unwrap_or((0, None));
+    let name = |axis: usize| facts.axes[axis].parameter.name().to_owned();
+    let named = spec.and_then(|spec| spec.picture);
+    MapFirst {
+        field: first::field(named, &facts.fields).name(),
+        x: name(x),
+        y: y.map(name),
+    }
+}
+
+/// The unit of a field; "1" where there is none.
+pub(super) fn unit(look: &Look, field: Field) -> String {
+    let of_tiles = |growing: &GrowingMap| field.unit(&growing.plan().spec.units);
+    look.told(|map| map.field_unit(field), of_tiles)
 }
 
 /// The sweep file's text.
@@ -123,6 +155,7 @@ fn scalars(look: &Look) -> Vec<MapScalar> {
         symbol: of.symbol().to_owned(),
         long_name: of.long_name().to_owned(),
         unit: units.map_or("1".into(), |units| of.unit(units)),
+        told: first::is_told(&of, value),
         value,
     };
     found.into_iter().map(told).collect()

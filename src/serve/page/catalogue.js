@@ -26,11 +26,14 @@ export function withoutZero([from, to]) {
 }
 
 export class Catalogue {
-  /** @param {{parameters: object[], laws: object[], fields: object[]}} told as slipmap answers */
-  constructor({ parameters, laws, fields }) {
+  /**
+   * @param {{parameters: object[], laws: object[], fields: object[], flags: object[]}} told as
+   *   slipmap answers
+   */
+  constructor({ parameters, laws, fields, flags }) {
     // The page follows motions under every law that it offers.
     laws = laws.filter((law) => law.motions);
-    Object.assign(this, { parameters, laws, fields });
+    Object.assign(this, { parameters, laws, fields, flags });
     this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
     // The parameters of formulas, with those that only they have.
     this.formulas = new Map();

@@ -1,7 +1,7 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
 import { Catalogue, withoutZero } from "./catalogue.js";
-import { isBeyond, lacking, valueOf } from "./cells.js";
+import { gapOf, isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
 import { copy, download, element } from "./dom.js";
 import { Dropped, take } from "./dropped.js";
@@ -260,8 +260,10 @@ class Explorer {
     const lack = lacking(plane, n);
     if (lack) return `${where}: ${lack}`;
     const { abscissa } = plane.others ?? {};
-    const parts = this.#values(plane, valueOf(plane, n), abscissa?.[n]);
-    return `${where}: ${[...parts, ...(plane.flags?.(n) ?? [])].join(", ")}`;
+    const gap = gapOf(plane, n)?.text;
+    const parts = this.#values(plane, valueOf(plane, n), abscissa?.[n], gap);
+    // What a cell is said to be is not said twice.
+    return `${where}: ${[...new Set([...parts, ...(plane.flags?.(n) ?? [])])].join(", ")}`;
   }
 
   #where(axes, values) {
@@ -270,14 +272,16 @@ class Explorer {
       .join(", ");
   }
 
-  /** The value of a chart's field, and the abscissa that goes with it. */
-  #values({ field, colours }, value, abscissa) {
+  /** The value of a chart's field or why there is none, and the abscissa that goes with it. */
+  #values({ field, colours }, value, abscissa, gap) {
     const { name, unit, kinds, short_name: words } = field;
-    const parts = [];
-    if (Number.isNaN(value)) parts.push(`${words ?? name}: no value`);
-    else if (name === "n_unstable") parts.push(value === 0 ? "stable" : counted(value));
+    const parts = gap ? [gap] : [];
+    if (Number.isNaN(value)) parts.splice(0, 1, `${words ?? name}: ${gap ?? told(NaN)}`);
+    // What is not sure is not called stable.
+    else if (name === "n_unstable")
+      parts.push(gap || value === null ? counted(value) : colours.name(value));
     else if (kinds) parts.push(colours.name(value));
-    else parts.push(withUnit(`${words ?? name} ${told(value)}`, unit));
+    else parts.push(`${words ?? name} ${colours.name(value, unit)}`);
     if (abscissa !== undefined && name !== "abscissa") {
       parts.push(withUnit(`spectral abscissa ${told(abscissa)}`, this.#unit([0, 0, -1])));
     }
@@ -307,8 +311,9 @@ class Explorer {
     const point = texts?.point === this.known?.text ? this.known?.answer : null;
     if (!point || !plane || plane.field.name !== this.state.show) return null;
     const value = plane.field.name === "n_unstable" ? point.n_unstable : this.#answered(point);
-    const parts = this.#values(plane, value, point.abscissa);
-    if (point.marginal) parts.push("marginal");
+    const { text } = this.catalogue.flags.find((flag) => flag.name === "marginal");
+    const gap = point.marginal ? text : undefined;
+    const parts = this.#values(plane, value, point.abscissa, gap);
     if (point.certified) parts.push("certified");
     return `${this.#where(plane.axes, this.plane.point)}: ${parts.join(", ")}`;
   }
@@ -571,14 +576,15 @@ class Explorer {
   #downloads(click) {
     const name = () => (this.state.map ? this.saved.name() : "slipmap-chart");
     const { plane } = this;
+    const title = () => this.#title(plane.plane);
     const shown = (act) => () => plane.plane && act();
     click(
       "save-png",
-      shown(async () => download(`${name()}.png`, await plane.png())),
+      shown(async () => download(`${name()}.png`, await plane.png(title()))),
     );
     click(
       "save-svg",
-      shown(() => download(`${name()}.svg`, plane.svg(), "image/svg+xml")),
+      shown(() => download(`${name()}.svg`, plane.svg(title()), "image/svg+xml")),
     );
     click(
       "save-csv",

@@ -1,10 +1,11 @@
 // The chart that is computed now: from what is set to a plane with its curves.
 
+import { flagsOf } from "./cells.js";
 import { coloursOf } from "./colours.js";
 import { element } from "./dom.js";
 import { Newest } from "./newest.js";
 import { Scale } from "./scale.js";
-import { sweepOf } from "./sweep.js";
+import { besides, sweepOf } from "./sweep.js";
 import { Waiting } from "./waiting.js";
 
 /** Cells of a chart along x and y. */
@@ -15,17 +16,6 @@ const REST = 150;
 const PATIENCE = 500;
 /** Fields whose cells cost no more than counts. */
 const QUICK = ["n_unstable", "delay_margin"];
-/** What the bits of a cell's status say. */
-const FLAGS = [
-  [1, "certified"],
-  [2, "marginal"],
-  [4, "not converged"],
-  [8, "two methods disagree"],
-  [16, "more than can be counted"],
-  [32, "recomputed by a second method"],
-  [64, "outside the model's range"],
-];
-
 /** The scale of an axis from the edge of its first cell to that of its last one. */
 function edges({ values }, log) {
   const scale = new Scale(values[0], values[values.length - 1], log);
@@ -106,8 +96,9 @@ export class Live {
       const text = this.text(state, CELLS, fields);
       const logs = [state.x.log, state.y.log];
       const { set } = this;
+      const fixed = besides(state, this.catalogue);
       this.waiting.goesOn("chart");
-      this.requests.want({ text, show, logs, rests, set, number: ++this.number });
+      this.requests.want({ text, show, logs, fixed, rests, set, number: ++this.number });
     } catch (error) {
       // What was asked before is not what is set.
       this.requests.stop();
@@ -121,15 +112,14 @@ export class Live {
     this.told.failed(error);
   }
 
-  #show(chart, { show, logs, rests, set, number }) {
+  #show(chart, { show, logs, fixed, rests, set, number }) {
     if (number === this.number) this.waiting.ends();
     const found = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
     const field = { ...this.fields[found.name], ...found };
     const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));
     const [nx, ny] = chart.axes.map(({ values }) => values.length);
-    const flags = (n) =>
-      FLAGS.filter(([mask]) => byName.status?.[n] & mask).map(([, name]) => name);
-    this.told.shown({
+    const { shown, gaps } = found;
+    const plane = {
       axes: chart.axes,
       ends: chart.axes.map((axis, i) => edges(axis, logs[i])),
       nx,
@@ -138,12 +128,16 @@ export class Live {
       cells: field.values,
       status: byName.status,
       others: byName,
-      flags,
-      colours: coloursOf(field, field.values),
+      shown,
+      gaps,
+      fixed,
+      flags: (n) => flagsOf(plane, this.catalogue.flags, n),
+      colours: coloursOf(field, shown),
       curves: curvesOf(chart),
       milliseconds: chart.milliseconds,
       rests,
-    });
+    };
+    this.told.shown(plane);
     this.stale.show(set);
   }
 }

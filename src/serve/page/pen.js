@@ -4,15 +4,19 @@
 
 /** Draws on a canvas. */
 export class CanvasPen {
-  /** @param {HTMLCanvasElement} canvas */
-  constructor(canvas) {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {{size?: number[], style?: CSSStyleDeclaration}} [given] its size in CSS pixels and the
+   *   style it takes, where it is not on the page
+   */
+  constructor(canvas, { size = [canvas.clientWidth, canvas.clientHeight], style } = {}) {
     const scale = window.devicePixelRatio || 1;
-    [this.width, this.height] = [canvas.clientWidth, canvas.clientHeight];
+    [this.width, this.height] = size;
     const [w, h] = [Math.round(this.width * scale), Math.round(this.height * scale)];
     if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
     this.context = canvas.getContext("2d");
     this.context.setTransform(scale, 0, 0, scale, 0, 0);
-    this.style = getComputedStyle(canvas);
+    this.style = style ?? getComputedStyle(canvas);
     // A file of it is looked at on any ground.
     this.box({ x: 0, y: 0, w: this.width, h: this.height }, { fill: this.colour("paper") });
   }
@@ -99,9 +103,12 @@ const short = (x) => Number(x.toFixed(2));
 
 /** Writes an SVG file of the same size as a canvas. */
 export class SvgPen {
-  /** @param {HTMLCanvasElement} canvas whose size and style it takes */
-  constructor(canvas) {
-    [this.width, this.height] = [canvas.clientWidth, canvas.clientHeight];
+  /**
+   * @param {HTMLCanvasElement} canvas whose style it takes
+   * @param {number[]} size in CSS pixels
+   */
+  constructor(canvas, size) {
+    [this.width, this.height] = size;
     this.style = getComputedStyle(canvas);
     this.parts = [];
     this.clips = 0;

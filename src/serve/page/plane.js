@@ -2,7 +2,8 @@
 
 import { isBeyond, lacking, paint, tellNumber, valueOf } from "./cells.js";
 import { areaWithin, drawFrame, placed } from "./frame.js";
-import { CanvasPen, SvgPen } from "./pen.js";
+import { CanvasPen } from "./pen.js";
+import { pngOf, svgOf } from "./picture.js";
 
 /**
  * What is seen of a plane.
@@ -16,8 +17,12 @@ import { CanvasPen, SvgPen } from "./pen.js";
  * @property {ArrayLike<number>} cells by x, then y
  * @property {Uint8Array} [status]
  * @property {Uint8Array} [bits]
+ * @property {Uint8Array} [gaps] why cells show no value, by the numbers of `shown`
+ * @property {object} shown what slipmap tells of the colours of its cells
  * @property {object} field name, long_name, unit, kinds
- * @property {[string, number][]} [fixed] parameters that are no axes here
+ * @property {{name: string, symbol: string, unit: string, value: number}[]} [fixed] parameters that
+ *   are no axes here
+ * @property {string} [from] the title of the map that it is of
  * @property {{mask: number, name: string}[]} [flagNames] those of its status
  * @property {object} colours see colours.js
  * @property {{values: Float64Array, stable_side: number, degree_of_stability: number}[]} curves
@@ -87,16 +92,16 @@ export class PlaneView {
     this.drawWith(new CanvasPen(this.canvas));
   }
 
-  drawWith(pen) {
-    const area = areaWithin(pen);
+  /** Draws what is seen into an area, with the point where it is wanted. */
+  drawWith(pen, area = areaWithin(pen), point = this.point) {
     const { axes } = this.plane;
     pen.box(area, { fill: pen.colour("empty") });
     pen.within(area, () => {
       pen.image(this.image, this.#imageBox(area));
       this.#drawCurves(pen, area);
-      if (this.best) this.#drawBest(pen, area);
-      if (this.other) this.#drawPoint(pen, area, this.other, "calm");
-      if (this.point) this.#drawPoint(pen, area, this.point, "mark");
+      if (point && this.best) this.#drawBest(pen, area);
+      if (point && this.other) this.#drawPoint(pen, area, this.other, "calm");
+      if (point) this.#drawPoint(pen, area, point, "mark");
     });
     drawFrame(pen, area, this.view, axes);
   }
@@ -161,16 +166,14 @@ export class PlaneView {
     }
   }
 
-  /** The file of what is seen. */
-  svg() {
-    const pen = new SvgPen(this.canvas);
-    this.drawWith(pen);
-    return pen.file();
+  /** A file of what is seen, with a title and the legend, without the point. */
+  svg(title) {
+    return svgOf(this, title);
   }
 
   /** The same as pixels. */
-  png() {
-    return new Promise((done) => this.canvas.toBlob(done, "image/png"));
+  png(title) {
+    return pngOf(this, title);
   }
 
   /** Every cell that is seen, once: its values along the axes, the field's, and its status. */
@@ -216,7 +219,7 @@ export class PlaneView {
     const { axes, field, fixed = [], flagNames = [], note, rests } = this.plane;
     const line = (text) => `# ${String(text).replace(/\s+/g, " ")}`;
     yield line(`${field.name}: ${field.long_name ?? ""} (${field.unit ?? "1"})`);
-    for (const [name, value] of fixed) yield line(`${name} = ${value}`);
+    for (const { name, value } of fixed) yield line(`${name} = ${value}`);
     for (const [axis, { index, name, points }] of axes.entries()) {
       if (!index) continue;
       const count = [xs, ys][axis].length;

@@ -1,6 +1,6 @@
 // Maps from files: views of one of them.
 
-import { flagsOf, valuesOf } from "./cells.js";
+import { flagsOf } from "./cells.js";
 import { coloursOf } from "./colours.js";
 import { element, make, terms } from "./dom.js";
 import { MapList } from "./list.js";
@@ -202,12 +202,12 @@ export class Saved {
     const { map } = this.state;
     const names = this.map.axes.map(({ name }) => name);
     const fields = this.map.fields.map(({ name }) => name);
-    if (!fields.includes(map.field)) [map.field] = fields;
+    const { first } = this.map;
+    if (!fields.includes(map.field)) map.field = first.field;
     const long = this.map.axes.filter(({ points }) => points > 1).map(({ name }) => name);
-    const [p, q] = this.map.curves_plane ?? long.slice(-2);
-    if (!names.includes(map.x)) map.x = p ?? names[0];
+    if (!names.includes(map.x)) map.x = first.x;
     if (!names.includes(map.y) || map.y === map.x) {
-      map.y = [q, ...long, ...names].find((name) => name && name !== map.x) ?? null;
+      map.y = [first.y, first.x, ...long, ...names].find((name) => name && name !== map.x) ?? null;
     }
     if (!long.includes(map.slice)) map.slice = long.includes(map.y) ? map.y : (long[0] ?? null);
     const middle = ({ name, points }) => {
@@ -283,7 +283,7 @@ export class Saved {
   #build() {
     const { map } = this.state;
     element("map-title").textContent = this.map.title || this.map.name;
-    const scalars = (this.map.scalars ?? []).filter(({ value }) => value !== 1 && value !== 0);
+    const scalars = (this.map.scalars ?? []).filter((parameter) => parameter.told);
     const state =
       this.map.state === "complete"
         ? "complete"
@@ -393,7 +393,8 @@ export class Saved {
       ends: [xs, ys],
       field: this.map.fields.find(({ name }) => name === map.field),
       flags: this.map.flags ?? [],
-      fixed: (this.map.scalars ?? []).map(({ name, value }) => [name, value]),
+      from: this.map.title || this.map.name,
+      fixed: this.map.scalars ?? [],
       of,
       set,
       curves: JSON.stringify([id, version, map.x, map.y, at]),
@@ -439,10 +440,10 @@ export class Saved {
       const { values, index } = i === 0 ? answer.x : answer.y;
       return { ...axis, values, index };
     });
-    const { values: cells, status, bits, damage, complete, progress } = answer;
+    const { values: cells, status, bits, gaps, shown, damage, complete, progress } = answer;
     const rests = complete && newest;
-    const plane = { axes, ends: asked.ends, field, cells, status, bits, damage, rests };
-    const numbers = field.storage === "real" || (field.storage === "few" && !field.kinds);
+    const of = { gaps, shown, status, bits, damage, rests };
+    const plane = { axes, ends: asked.ends, field, cells, ...of };
     this.place = this.place?.id === id ? this.place : null;
     this.#placePoint(axes);
     this.told.shown(
@@ -453,9 +454,10 @@ export class Saved {
         ny: axes[1]?.values.length ?? 1,
         flags: (n) => flagsOf(plane, asked.flags, n),
         flagNames: asked.flags,
-        colours: coloursOf(field, numbers ? valuesOf(plane) : cells),
+        colours: coloursOf(field, shown),
         curves: this.curves.get(asked.curves) ?? [],
-        fixed: [...(answer.at ?? []).map(({ name, value }) => [name, value]), ...asked.fixed],
+        from: asked.from,
+        fixed: [...this.#places(answer), ...asked.fixed],
         milliseconds: answer.milliseconds,
         note: this.#note(answer),
       }),
@@ -468,6 +470,14 @@ export class Saved {
     element("reading").value = progress;
     if (complete || !newest) return;
     this.again = setTimeout(() => asked === this.wanted && this.windows.want(asked), AGAIN);
+  }
+
+  /** Where a window lies along the axes that do not span it. */
+  #places({ at = [] }) {
+    return at.map(({ name, value }) => {
+      const { symbol, unit } = this.#axis(name);
+      return { name, symbol, unit, value };
+    });
   }
 
   #note({ damage, complete, progress, milliseconds }) {

@@ -1,6 +1,6 @@
 // The line chart of a field along one axis of a map.
 
-import { tellNumber, valueOf } from "./cells.js";
+import { gapOf, tellNumber, valueOf } from "./cells.js";
 import { element } from "./dom.js";
 import { Newest } from "./newest.js";
 import { linesIn } from "./plots.js";
@@ -81,10 +81,11 @@ export class Slice {
     const rows = rowsOf(answer, field);
     const data = [rows.map(([at]) => at), rows.map(([, value]) => value)];
     this.line?.destroy();
-    this.line = new window.uPlot(this.#options(axis, field, data[1]), data, this.target);
+    const why = (place) => rows[place][2];
+    this.line = new window.uPlot(this.#options(axis, field, data[1], why), data, this.target);
   }
 
-  #options(axis, field, values) {
+  #options(axis, field, values, why) {
     const { colour, axis: styled } = linesIn(this.target);
     const text = (value) => (value === null ? "no value" : tellNumber(field, value));
     const room = (_, labels) =>
@@ -113,7 +114,7 @@ export class Slice {
         { label: axis.symbol, value: (_, x) => (x === null ? "" : told(x, 7)) },
         {
           label: field.short_name ?? field.name,
-          value: (_, value, __, place) => (place === null ? "" : text(value)),
+          value: (_, value, __, place) => (place === null ? "" : (why(place) ?? text(value))),
           width: 1.5,
           stroke: colour("calm"),
           spanGaps: false,
@@ -124,14 +125,17 @@ export class Slice {
   }
 }
 
-/** Each cell once, as where it lies and its value; null where it has none that can be drawn. */
-function rowsOf({ x, values, status, bits }, field) {
-  const cells = { field, cells: values, status, bits };
+/**
+ * Each cell once, as where it lies, its value, null where it has none that can be drawn, and why it
+ * shows none.
+ */
+function rowsOf({ x, values, status, bits, gaps, shown }, field) {
+  const cells = { field, cells: values, status, bits, gaps, shown };
   const rows = [];
   for (let i = 0; i < values.length; i++) {
     if (i > 0 && x.index[i] === x.index[i - 1]) continue;
-    const value = valueOf(cells, i);
-    rows.push([x.values[i], Number.isFinite(value) ? value : null]);
+    const [value, gap] = [valueOf(cells, i), gapOf(cells, i)];
+    rows.push([x.values[i], Number.isFinite(value) && !gap ? value : null, gap?.text]);
   }
   return rows.sort((p, q) => p[0] - q[0]);
 }

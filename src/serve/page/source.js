@@ -37,7 +37,9 @@ function filled(of, bytes, begun) {
   if (!of || typeof of !== "object") return of;
   if (isArray(of)) {
     const values = numbers(bytes, begun, of);
-    return "name" in of || "stable_side" in of ? Object.assign(of, { values }) : values;
+    if (!("name" in of || "stable_side" in of)) return values;
+    if (of.gaps) of.gaps = numbers(bytes, begun, of.gaps);
+    return Object.assign(of, { values });
   }
   for (const [key, value] of Object.entries(of)) of[key] = filled(value, bytes, begun);
   return of;

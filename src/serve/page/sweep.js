@@ -1,6 +1,7 @@
 // Texts in TOML for what is set on the page: the same words as in sweep and case files.
 
 import { GAINS } from "./catalogue.js";
+import { unitOf } from "./scale.js";
 
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
@@ -47,15 +48,31 @@ function tablesOf(state, catalogue, names) {
   return text;
 }
 
-/** The table [fixed] of parameters, without those that are as if not given. */
-function fixedOf(state, catalogue, names) {
-  const value = (name) => catalogue.value(state, name);
+/** Those of the parameters that are not as if not given. */
+function given(state, catalogue, names) {
   const usual = (name) => {
     const { page, default: usually } = catalogue.about(name);
-    return page.folded && value(name) === usually;
+    return page.folded && catalogue.value(state, name) === usually;
   };
-  const kept = names.filter((name) => catalogue.about(name).group !== "law" && !usual(name));
-  return kept.map((name) => line(name, value(name))).join("");
+  return names.filter((name) => !usual(name));
+}
+
+/** The table [fixed] of parameters, without those that are as if not given. */
+function fixedOf(state, catalogue, names) {
+  const kept = names.filter((name) => catalogue.about(name).group !== "law");
+  const lines = given(state, catalogue, kept);
+  return lines.map((name) => line(name, catalogue.value(state, name))).join("");
+}
+
+/** The parameters of a chart that are no axes of it, with their values. */
+export function besides(state, catalogue) {
+  const axes = [state.x.name, state.y.name];
+  const names = parametersOf(state, catalogue).filter((name) => !axes.includes(name));
+  return given(state, catalogue, names).map((name) => {
+    const { symbol, dimension } = catalogue.about(name);
+    const unit = unitOf(dimension, state.units);
+    return { name, symbol, unit, value: catalogue.value(state, name) };
+  });
 }
 
 const withFixed = (text) => (text ? `[fixed]\n${text}` : "");

@@ -1,6 +1,6 @@
 // A table of what a chart shows: the cells nearest to a few values of both axes.
 
-import { lacking, tellNumber, valueOf } from "./cells.js";
+import { gapOf, lacking, valueOf, wordsOf } from "./cells.js";
 import { make } from "./dom.js";
 import { told } from "./scale.js";
 
@@ -9,7 +9,7 @@ const [ROWS, COLUMNS] = [9, 7];
 
 /** Fills a table with cells of a plane, rows by y from the top; one row where there is no y. */
 export function tellTable(table, plane, view) {
-  const { axes, nx, ny, ends, colours, field } = plane;
+  const { axes, nx, ny, ends, field, shown } = plane;
   const places = (axis, n, most) => {
     const found = new Map();
     for (let k = 0; k < most; k++) {
@@ -26,15 +26,14 @@ export function tellTable(table, plane, view) {
   const head = columns.map(({ value }) => make("th", { scope: "col" }, told(value, 4)));
   const words = axes.map(({ symbol }) => symbol).reverse();
   const corner = make("th", { scope: "col" }, words.join(" \\ "));
-  const text = (n) => {
-    const value = valueOf(plane, n);
-    if (field.kinds) return tellNumber(field, value);
-    return Array.isArray(colours.legend) ? colours.name(value) : told(value, 4);
-  };
+  // Numbers of a scale have less digits here.
+  const number = (n) => shown.scale && !lacking(plane, n) && !gapOf(plane, n);
+  const finite = (n) => number(n) && Number.isFinite(valueOf(plane, n)) && valueOf(plane, n) !== 0;
+  const text = (n) => (finite(n) ? told(valueOf(plane, n), 4) : wordsOf(plane, n));
   const body = rows.map((row) => {
     const found = columns.map(({ pixel }) => {
       const n = pixel * ny + row.pixel;
-      return make("td", {}, lacking(plane, n) ?? text(n));
+      return make("td", {}, text(n));
     });
     const name = one ? (field.short_name ?? field.name) : told(row.value, 4);
     return make("tr", {}, make("th", { scope: "row" }, name), ...found);

@@ -23,7 +23,7 @@ enum Spread {
 
 /// A scale between two values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     spread: Spread,
     from: f64,
     to: f64,
@@ -33,7 +33,7 @@ pub(super) struct Scale {
 impl Scale {
     /// The scale from the smallest to the largest of `values`; logarithmic if they are spaced so,
     /// also if they are negative.
-    pub(super) fn between(values: &[f64]) -> Self {
+    pub(crate) fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
             spread: match log_spaced(values) {
@@ -47,7 +47,7 @@ impl Scale {
     }
 
     /// The scale that contains the whole cell of every value: half a step more at both ends.
-    pub(super) fn around(values: &[f64]) -> Self {
+    pub(crate) fn around(values: &[f64]) -> Self {
         let scale = Self::between(values);
         let edges = scale.edges(values);
         let (from, to) = ends(&edges);
@@ -56,10 +56,10 @@ impl Scale {
 
     /// The scale of the speeds of the periods `values`, the slowest to the left; none where fewer
     /// than two are positive. A period of 0 has no place on it.
-    pub(super) fn of_speeds(values: &[f64], unit: SpeedUnit) -> Option<Self> {
+    pub(crate) fn of_speeds(values: &[f64], unit: SpeedUnit) -> Option<Self> {
         let positive: Vec<f64> = values.iter().copied().filter(|v| *v > 0.0).collect();
         let (from, to) = ends(&positive);
-        (positive.len() > 1 && from < to).then_some(Self {
+        has_speeds(values).then_some(Self {
             spread: Spread::Speed(unit),
             from,
             to,
@@ -68,7 +68,7 @@ impl Scale {
     }
 
     /// A linear scale between two different values.
-    pub(super) fn linear(from: f64, to: f64) -> Self {
+    pub(crate) fn linear(from: f64, to: f64) -> Self {
         Self {
             spread: Spread::Linear,
             from,
@@ -78,7 +78,7 @@ impl Scale {
     }
 
     /// A logarithmic scale between two different positive values.
-    pub(super) fn logarithmic(from: f64, to: f64) -> Self {
+    pub(crate) fn logarithmic(from: f64, to: f64) -> Self {
         Self {
             spread: Spread::Logarithmic,
             ..Self::linear(from, to)
@@ -87,7 +87,7 @@ impl Scale {
 
     /// A logarithmic scale over all positive `values` or, if they spread wider, over the uppermost
     /// `decades` and part of one; none without a positive value.
-    pub(super) fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
+    pub(crate) fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
         let positive = values.filter(|v| v.is_finite() && *v > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
             (f64::min(low, v), f64::max(high, v))
@@ -97,12 +97,12 @@ impl Scale {
     }
 
     /// True for a logarithmic scale.
-    pub(super) fn is_logarithmic(&self) -> bool {
+    pub(crate) fn is_logarithmic(&self) -> bool {
         self.spread == Spread::Logarithmic
     }
 
     /// This scale with ticks at least this far apart.
-    pub(super) fn with_smallest_step(self, smallest_step: f64) -> Self {
+    pub(crate) fn with_smallest_step(self, smallest_step: f64) -> Self {
         Self {
             smallest_step,
             ..self
@@ -110,7 +110,7 @@ impl Scale {
     }
 
     /// The position of a value: 0 at the lower end, 1 at the upper one.
-    pub(super) fn part(&self, value: f64) -> f64 {
+    pub(crate) fn part(&self, value: f64) -> f64 {
         match self.spread {
             Spread::Logarithmic => (value / self.from).ln() / (self.to / self.from).ln(),
             Spread::Linear => (value - self.from) / (self.to - self.from),
@@ -124,7 +124,7 @@ impl Scale {
     }
 
     /// The value at a position.
-    pub(super) fn value(&self, part: f64) -> f64 {
+    pub(crate) fn value(&self, part: f64) -> f64 {
         match self.spread {
             Spread::Logarithmic => self.from * (self.to / self.from).powf(part),
             Spread::Linear => self.from + (self.to - self.from) * part,
@@ -137,12 +137,12 @@ impl Scale {
     }
 
     /// True if the value lies on the scale.
-    pub(super) fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         (-1e-9..=1.0 + 1e-9).contains(&self.part(value))
     }
 
     /// Ticks at round values, about `most` of them with a label.
-    pub(super) fn ticks(&self, most: usize) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, most: usize) -> Vec<Tick> {
         match self.spread {
             Spread::Logarithmic if self.to < 0.0 => {
                 let mirrored = ticks::logarithmic(-self.to, -self.from, most).into_iter();
@@ -165,7 +165,7 @@ impl Scale {
 
     /// The edges of the cells of `values`, one more than there are cells: midpoints on the scale,
     /// and as far beyond the ends. For periods the outer edges are the end values themselves.
-    pub(super) fn edges(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn edges(&self, values: &[f64]) -> Vec<f64> {
         let middle = |a: f64, b: f64| match self.spread {
             Spread::Logarithmic => (a * b).sqrt().copysign(a),
             Spread::Linear | Spread::Speed(_) => 0.5 * (a + b),
@@ -187,7 +187,7 @@ impl Scale {
     }
 
     /// The edges of cells that fill the scale: the first and the last one reach its ends.
-    pub(super) fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
         let mut edges = self.edges(values);
         let growing = values.first() <= values.last();
         let (first, last) = if growing {
@@ -200,6 +200,13 @@ impl Scale {
         }
         edges
     }
+}
+
+/// Whether periods have a scale of speeds: two different ones are positive.
+pub(crate) fn has_speeds(values: &[f64]) -> bool {
+    let positive: Vec<f64> = values.iter().copied().filter(|v| *v > 0.0).collect();
+    let (from, to) = ends(&positive);
+    positive.len() > 1 && from < to
 }
 
 fn ends(values: &[f64]) -> (f64, f64) {

@@ -58,7 +58,7 @@ impl ColourMap {
     }
 
     /// The names of the maps with two sides, or of the others.
-    pub(super) fn names(two_sides: bool) -> String {
+    pub(crate) fn names(two_sides: bool) -> String {
         let fitting = Self::ALL
             .into_iter()
             .filter(|map| map.has_two_sides() == two_sides);
@@ -76,7 +76,7 @@ impl ColourMap {
     }
 
     /// The colour at a part of the way, 0 to 1.
-    pub(super) fn at(self, part: f64) -> Rgb {
+    pub(crate) fn at(self, part: f64) -> Rgb {
         let part = match self {
             // The crate has this map in the opposite order.
             Self::PuOr => 1.0 - part,
@@ -87,12 +87,12 @@ impl ColourMap {
     }
 
     /// The colour on one side of a two-sided map, −1 to 1; 0 is the middle.
-    pub(super) fn on_side(self, strength: f64) -> Rgb {
+    pub(crate) fn on_side(self, strength: f64) -> Rgb {
         self.at(0.5 + 0.5 * USED * strength)
     }
 
     /// The colours of values beyond both ends of a map with two sides.
-    pub(super) fn beyond(self) -> (Rgb, Rgb) {
+    pub(crate) fn beyond(self) -> (Rgb, Rgb) {
         (self.at(0.0), self.at(1.0))
     }
 }

@@ -5,45 +5,52 @@ use crate::setting::Field;
 
 /// A colour of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Rgb(pub u8, pub u8, pub u8);
+pub(crate) struct Rgb(pub u8, pub u8, pub u8);
+
+impl Rgb {
+    /// Its name in style sheets.
+    pub(crate) fn hex(self) -> String {
+        format!("#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
 
 /// Text and frames.
-pub(super) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
+pub(crate) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
 /// Less prominent text.
-pub(super) const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
+pub(crate) const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Grid lines.
-pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
+pub(crate) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 /// Paper.
-pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
+pub(crate) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Cells without a value, below the hatching.
-pub(super) const NO_VALUE: Rgb = Rgb(0xd9, 0xd9, 0xd9);
+pub(crate) const NO_VALUE: Rgb = Rgb(0xd9, 0xd9, 0xd9);
 /// Cells outside the model's range, below the hatching.
-pub(super) const OUTSIDE_MODEL: Rgb = Rgb(0xbc, 0xbc, 0xbc);
+pub(crate) const OUTSIDE_MODEL: Rgb = Rgb(0xbc, 0xbc, 0xbc);
 /// Cells whose value is not known, below the hatching.
-pub(super) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
+pub(crate) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
 /// The lines of the hatching.
-pub(super) const HATCH: Rgb = Rgb(0x5a, 0x5a, 0x5a);
+pub(crate) const HATCH: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Cells without a value because the block lifts off.
-pub(super) const LIFTS_OFF: Rgb = Rgb(0xc9, 0x94, 0xc7);
+pub(crate) const LIFTS_OFF: Rgb = Rgb(0xc9, 0x94, 0xc7);
 /// Cells without a value because stick-slip persists.
-pub(super) const PERSISTS: Rgb = Rgb(0xa0, 0x5e, 0x4a);
+pub(crate) const PERSISTS: Rgb = Rgb(0xa0, 0x5e, 0x4a);
 /// Values of 0, and values above and below a scale that does not include them.
-pub(super) const ZERO: Rgb = Rgb(0xbf, 0xe3, 0xff);
-pub(super) const ABOVE: Rgb = Rgb(0xe1, 0xfc, 0xc2);
-pub(super) const BELOW: Rgb = Rgb(0x00, 0x00, 0x00);
+pub(crate) const ZERO: Rgb = Rgb(0xbf, 0xe3, 0xff);
+pub(crate) const ABOVE: Rgb = Rgb(0xe1, 0xfc, 0xc2);
+pub(crate) const BELOW: Rgb = Rgb(0x00, 0x00, 0x00);
 /// Infinite values on a scale of sizes.
-pub(super) const INFINITE: Rgb = Rgb(0xf5, 0x44, 0x00);
-pub(super) const MINUS_INFINITE: Rgb = Rgb(0x7f, 0x3b, 0x08);
+pub(crate) const INFINITE: Rgb = Rgb(0xf5, 0x44, 0x00);
+pub(crate) const MINUS_INFINITE: Rgb = Rgb(0x7f, 0x3b, 0x08);
 /// Infinite values on a scale with two sides: (worse, better).
 const ENDLESS: (Rgb, Rgb) = (Rgb(0x00, 0x00, 0x00), Rgb(0x20, 0x40, 0xff));
 /// Stable cells.
-pub(super) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
+pub(crate) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
 /// Stable areas below a line.
-pub(super) const STABLE_TINT: Rgb = Rgb(0xa0, 0xd5, 0xcf);
+pub(crate) const STABLE_TINT: Rgb = Rgb(0xa0, 0xd5, 0xcf);
 /// Areas where the block sticks, below a line.
-pub(super) const STUCK: Rgb = Rgb(0xe2, 0xd8, 0xc0);
+pub(crate) const STUCK: Rgb = Rgb(0xe2, 0xd8, 0xc0);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
-pub(super) const UNSTABLE: [Rgb; 4] = [
+pub(crate) const UNSTABLE: [Rgb; 4] = [
     Rgb(0xf6, 0xe8, 0xc3),
     Rgb(0xdf, 0xc2, 0x7d),
     Rgb(0xbf, 0x81, 0x2d),
@@ -57,7 +64,7 @@ const ODD: [Rgb; 4] = [
     Rgb(0x40, 0x28, 0x6e),
 ];
 /// The largest class of numbers of unstable roots. Larger numbers share its colour.
-pub(super) const LAST_COUNT: usize = 2 * UNSTABLE.len();
+pub(crate) const LAST_COUNT: usize = 2 * UNSTABLE.len();
 
 /// Outcomes: slides, sticks and slips, oscillates, lifts off, diverges, undecided, none. Then the
 /// ends of stick-slip: grazing, fold, period doubling, irregular, persists, never, lost. The
@@ -111,18 +118,18 @@ const FEW: [Rgb; 4] = [
 
 /// Steps of [`two_sided`] on each side of zero: too fine to be distinguished, coarse enough for
 /// cells to merge.
-const STEPS: f64 = 32.0;
+pub(crate) const STEPS: f64 = 32.0;
 
 /// The weakest colour of [`two_sided`] on either side of zero, as a share of the strongest.
 const TINT: f64 = 0.2;
 /// Steps of [`of_size`], for the same reasons.
-const SIZE_STEPS: f64 = 64.0;
+pub(crate) const SIZE_STEPS: f64 = 64.0;
 
 /// The part of viridis used for lines: the rest is too light on white.
 const LINES: f64 = 0.8;
 
 /// The colour of line `i` of `n`, from dark to light.
-pub(super) fn of_line(i: usize, n: usize) -> Rgb {
+pub(crate) fn of_line(i: usize, n: usize) -> Rgb {
     let part = if n > 1 {
         i as f64 / (n - 1) as f64
     } else {
@@ -132,12 +139,12 @@ pub(super) fn of_line(i: usize, n: usize) -> Rgb {
 }
 
 /// The class of a number of unstable roots: the number itself, up to [`LAST_COUNT`].
-pub(super) fn class_of_count(n: f64) -> usize {
+pub(crate) fn class_of_count(n: f64) -> usize {
     (n as usize).min(LAST_COUNT)
 }
 
 /// The colour of a number of unstable roots, one for each class.
-pub(super) fn of_count(n: f64) -> Rgb {
+pub(crate) fn of_count(n: f64) -> Rgb {
     if n.is_nan() {
         return NO_VALUE;
     }
@@ -149,7 +156,7 @@ pub(super) fn of_count(n: f64) -> Rgb {
 }
 
 /// The colour of the kind of `field` with this number, or of a small count.
-pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
+pub(crate) fn of_kind(field: Field, number: f64) -> Rgb {
     let colours: &[Rgb] = match field {
         Field::Outcome => &OUTCOMES,
         Field::Regime => &REGIMES,
@@ -163,7 +170,7 @@ pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
 }
 
 /// The largest small count with a colour of its own.
-pub(super) fn last_of_few() -> usize {
+pub(crate) fn last_of_few() -> usize {
     FEW.len() - 1
 }
 
@@ -172,7 +179,7 @@ pub(super) fn last_of_few() -> usize {
 ///
 /// The strength grows with the square root, and both sides begin with a tint. Cells that are just
 /// stable are the most common ones, and must not look like unstable cells.
-pub(super) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
+pub(crate) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
     let part = (value / range).clamp(-1.0, 1.0);
     if part.is_nan() {
         return NO_VALUE;
@@ -186,7 +193,7 @@ pub(super) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
 }
 
 /// The colour of a value beyond the ends of a scale with two sides, or of an infinite one.
-pub(super) fn beyond(map: ColourMap, value: f64) -> Rgb {
+pub(crate) fn beyond(map: ColourMap, value: f64) -> Rgb {
     let (worse, better) = match value.is_infinite() {
         true => ENDLESS,
         false => map.beyond(),
@@ -195,17 +202,17 @@ pub(super) fn beyond(map: ColourMap, value: f64) -> Rgb {
 }
 
 /// The colour of a size at `part` of the way from small to large: from dark to light.
-pub(super) fn of_size(map: ColourMap, part: f64) -> Rgb {
+pub(crate) fn of_size(map: ColourMap, part: f64) -> Rgb {
     map.at((part * SIZE_STEPS).round() / SIZE_STEPS)
 }
 
 /// `colour` mixed with paper; 0 gives paper.
-pub(super) fn pale(colour: Rgb, part: f64) -> Rgb {
+pub(crate) fn pale(colour: Rgb, part: f64) -> Rgb {
     mix(PAPER, colour, part)
 }
 
 /// `colour` for letters, which need more contrast than lines.
-pub(super) fn darker(colour: Rgb) -> Rgb {
+pub(crate) fn darker(colour: Rgb) -> Rgb {
     mix(colour, INK, 0.35)
 }
 

@@ -1,10 +1,10 @@
 //! Round values along an axis.
 
-use super::text::{decimal_exponent, tick_number};
+use super::numbers::{decimal_exponent, tick_number};
 
 /// A mark on an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     /// The value that it marks.
     pub value: f64,
     /// Its text; none for a minor tick.
@@ -13,7 +13,7 @@ pub(super) struct Tick {
 
 impl Tick {
     /// The tick at the negative of this one's value, which is positive.
-    pub(super) fn mirrored(self) -> Self {
+    pub(crate) fn mirrored(self) -> Self {
         Self {
             value: -self.value,
             label: self.label.map(|label| format!("−{label}")),
@@ -26,7 +26,7 @@ const PLAIN: std::ops::Range<i32> = -4..6;
 
 /// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten: at most `most`, and at
 /// least `smallest_step` apart.
-pub(super) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec<Tick> {
+pub(crate) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec<Tick> {
     let rough = ((to - from) / most.max(1) as f64).max(smallest_step);
     let step = round_step(rough);
     if !(step.is_finite() && step > 0.0) {
@@ -64,7 +64,7 @@ fn round_step(rough: f64) -> f64 {
 
 /// Ticks at 1 to 9 times powers of ten; labels at the powers, and at 2 and 5 times them over a
 /// short range, if `most` leaves room for them.
-pub(super) fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
+pub(crate) fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
     let (low, high) = (from.log10().floor() as i32, to.log10().ceil() as i32);
     let decades = (to / from).log10();
     let every = (decades / most.max(1) as f64).ceil().max(1.0) as i32;
