@@ -61,6 +61,7 @@ const FILES: &[(&str, &str)] = &files![
     "steps.js",
     "sweep.js",
     "table.js",
+    "thumbnails.js",
     // The library uPlot, as published.
     "uplot.css",
     "uplot-license.txt",

@@ -1,16 +1,21 @@
 // Maps on the page say the same as pictures of them, the command and the file: colours, classes and
-// words. The first view of one, and files of what is seen.
+// words. The list of maps, the first view of one, and files of what is seen.
 
 import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
+  PROGRAM,
   atRest,
+  eventually,
   newFolder,
   openPage,
   opened,
+  picture,
   slipmap,
+  violations,
 } from "./support.mjs";
 
 const folder = newFolder();
@@ -384,4 +389,69 @@ test("files of what is seen carry title, parameters and legend, and no cursor", 
   await atRest(page);
   await check("live", ["Number of unstable roots over α_v and τ", "μ′ = −0.3", "0, stable"]);
   assert.deepEqual(page.faults, []);
+});
+
+test("the list shows pictures, sizes and titles, and is searched", async () => {
+  const page = await openPage(browser, server.link);
+  await page.getByRole("button", { name: /^Maps \(/ }).click();
+  const rows = page.locator("#maps-table tbody tr:visible");
+  assert.equal(await rows.count(), NAMES.length);
+  for (const part of ["A slope of 0", "n_unstable, delay_margin, abscissa", "273 cells", "kB"]) {
+    assert.ok((await page.locator("#maps-table").innerText()).includes(part), part);
+  }
+  // Every picture in sight is made, in its own colours.
+  const colours = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll("#maps-table canvas")].map((canvas) => {
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(new Uint32Array(data.buffer)).size;
+      }),
+    );
+  await eventually(async () => {
+    const found = await colours();
+    assert.ok(found.every((count) => count > 1), found.join());
+  });
+  await picture(page, "maps_list");
+  assert.deepEqual(await violations(page), []);
+  for (const [words, found] of [
+    ["slope", ["marginal.h5"]],
+    ["MOTION", ["motions.h5"]],
+    ["vc_over", ["limit.h5"]],
+    ["delay_margin tau", ["gain.h5", "marginal.h5"]],
+    ["nothing of this", []],
+    ["", NAMES],
+  ]) {
+    await page.locator("#maps-search").fill(words);
+    const names = await page.locator("#maps-table tbody tr:visible button").allInnerTexts();
+    assert.deepEqual(names.sort(), found, words);
+  }
+  await page.locator("#maps-search").fill("slope");
+  // What is searched stays while the list is looked at again.
+  await page.evaluate(() => window.slipmap.saved.list.look());
+  assert.equal(await rows.count(), 1);
+  assert.match(await page.locator("#maps").innerText(), /1 of 5 maps/);
+});
+
+test("a map that is computed tells how far it is and how long it takes", async () => {
+  const sweep = newFile("toml");
+  writeFileSync(
+    sweep,
+    CRITICAL.replace("Critical velocities", "A long one").replace("points = 20", "points = 4000"),
+  );
+  const path = join(folder, "long.h5");
+  const run = spawn(PROGRAM, ["run", sweep, "-o", path, "--threads", "1"], { stdio: "ignore" });
+  try {
+    const page = await openPage(browser, server.link);
+    await page.getByRole("button", { name: /^Maps \(/ }).click();
+    const row = page.locator("#maps-table tbody tr", { hasText: "long.h5" });
+    await row.locator("progress").waitFor({ timeout: 60000 });
+    await row.filter({ hasText: /running, \d+ %, .* left/ }).waitFor({ timeout: 90000 });
+    const { value, max } = await row.locator("progress").evaluate((bar) => ({ value: bar.value, max: bar.max }));
+    assert.ok(value > 0 && value < max, `${value} of ${max}`);
+    await picture(page, "maps_running");
+  } finally {
+    const ended = new Promise((done) => run.once("exit", done));
+    run.kill("SIGTERM");
+    await ended;
+  }
 });

@@ -436,6 +436,9 @@ fn a_map_grows_while_it_is_looked_at() {
         first = complete(&serving, &path);
     }
     assert!(there(&first) < lines * 140, "{}", there(&first));
+    until(20, "it is known how long it takes", || {
+        entry(&serving, "slow.h5")["seconds_left"].is_number()
+    });
     go_on_until(tiles() + 2);
     until(20, "more of it is there", || {
         let later = complete(&serving, &path);

@@ -78,7 +78,7 @@ impl Opened {
             return Ok((frame(Kind::OtherMap, Vec::new()), Vec::new()));
         }
         let answer = match ask {
-            Ask::Summary => json(&description::summary(look))?,
+            Ask::Summary => json(&description::summary(look, &self.path))?,
             Ask::Description => json(&description::description(look))?,
             Ask::Cell(query) => json(&answers::cell(look, query)?)?,
             Ask::Sweep => frame(Kind::Text, description::sweep(look).into_bytes()),

@@ -139,6 +139,9 @@ pub(super) struct MapSummary {
     /// The hash of its plan: maps of one sweep have the same.
     #[schema(required)]
     pub plan_hash: Option<String>,
+    /// Seconds until the slowest shard that is computed is done, as far as that is known.
+    #[schema(required)]
+    pub seconds_left: Option<f64>,
 }
 
 /// An axis.

@@ -1,10 +1,13 @@
 //! The description of a map, besides its cells.
 
+use std::path::Path;
+
 use super::described::{self, MapAxisEnds, MapField, MapFirst, MapScalar, MapSummary, MapTold};
 use crate::explore::known::{KnownField, KnownFlag};
 use crate::maps::look::Look;
 use crate::meaning::first;
 use crate::meaning::scale::has_speeds;
+use crate::queue::progress::Watched;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::LIMIT;
 use crate::setting::{Field, Parameter};
@@ -43,8 +46,8 @@ fn title(look: &Look) -> String {
     )
 }
 
-/// The description of a map for the list.
-pub(super) fn summary(look: &Look) -> MapSummary {
+/// The description of the map at `path` for the list.
+pub(super) fn summary(look: &Look, path: &Path) -> MapSummary {
     let facts = look.facts();
     let fields = facts.fields.iter().map(|field| field.name().into());
     MapSummary {
@@ -56,6 +59,13 @@ pub(super) fn summary(look: &Look) -> MapSummary {
         plan_hash: look.told(
             |map| map.root_text(root::PLAN_HASH),
             |growing| Some(growing.manifest().plan_hash.clone()),
+        ),
+        seconds_left: look.told(
+            |_| None,
+            |_| {
+                let progress = Watched::tiles_of(path).look().ok().flatten();
+                progress.and_then(|progress| progress.seconds_left())
+            },
         ),
     }
 }

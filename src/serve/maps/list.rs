@@ -364,6 +364,14 @@ fn entry(found: &Found, told: Option<&Told>) -> MapEntry {
     let modified = found.modified();
     let age = modified.and_then(|time| SystemTime::now().duration_since(time).ok());
     let since = modified.and_then(|time| time.duration_since(SystemTime::UNIX_EPOCH).ok());
+    let mut summary = match told {
+        Some(Told::Summary(summary)) => summary.clone(),
+        _ => MapSummary::default(),
+    };
+    // It was told when the map was written last.
+    let left = summary.seconds_left.filter(|_| state == "running");
+    let since_told = age.map_or(0.0, |age| age.as_secs_f64());
+    summary.seconds_left = left.map(|left| (left - since_told).max(0.0));
     MapEntry {
         id: found.id.clone(),
         name: found.name.clone(),
@@ -372,10 +380,7 @@ fn entry(found: &Found, told: Option<&Told>) -> MapEntry {
         bytes: found.bytes(),
         modified: since.map(|since| since.as_secs_f64()),
         age_seconds: age.map(|age| age.as_secs_f64()),
-        summary: match told {
-            Some(Told::Summary(summary)) => summary.clone(),
-            _ => MapSummary::default(),
-        },
+        summary,
     }
 }
 

@@ -1,10 +1,12 @@
-// The list of maps in the folder.
+// The list of maps in the folder: each with a small picture of it, found by words of its own.
 
+import { bytes, seconds } from "./amounts.js";
 import { element, make } from "./dom.js";
+import { Thumbnails } from "./thumbnails.js";
 
 /** How often the list is looked at, while the page is seen; in milliseconds. */
 const LOOK = 2500;
-const WORDS = ["Map", "State", "Axes", "Fields", "Cells", "Changed"];
+const WORDS = ["Map", "State", "Axes", "Fields", "Size", "Changed"];
 const AGES = [
   [86400, "day"],
   [3600, "hour"],
@@ -20,6 +22,13 @@ function age(seconds) {
   return `${count} ${word}${count === 1 ? "" : "s"} ago`;
 }
 
+/** Whether all words of a search are in what is said of a map. */
+function isFound({ name, title, fields = [], axes = [] }, words) {
+  const said = [name, title ?? "", ...fields, ...axes.flatMap((axis) => [axis.name, axis.symbol])];
+  const text = said.join("\n").toLowerCase();
+  return words.every((word) => text.includes(word));
+}
+
 export class MapList {
   /**
    * @param {object} source see source.js
@@ -27,8 +36,15 @@ export class MapList {
    *   listed: (maps: object[], folder: string) => void, failed: (error: Error) => void}} told
    */
   constructor(source, told) {
-    Object.assign(this, { source, told });
-    this.changed = new Map();
+    Object.assign(this, { source, told, maps: [] });
+    /** What changes in a row as time goes by, by the id of its map. */
+    this.rows = new Map();
+    this.thumbnails = new Thumbnails(source);
+    this.search = make("input", { type: "search", id: "maps-search" });
+    this.search.addEventListener("input", () => this.#filter());
+    this.none = make("p", { role: "status" });
+    const label = make("label", { className: "row" }, "Search ", this.search);
+    element("maps-title").after(label, this.none);
     element("to-maps").addEventListener("click", () => this.#open(element("maps").hidden));
   }
 
@@ -58,28 +74,48 @@ export class MapList {
   }
 
   #tell(maps) {
-    const key = JSON.stringify(maps.map((map) => ({ ...map, age_seconds: null })));
-    if (key !== this.key) this.#build(maps);
+    const lasting = ({ age_seconds: _, seconds_left: __, ...map }) => map;
+    const key = JSON.stringify(maps.map(lasting));
+    this.maps = maps;
+    if (key !== this.key) this.#build();
     this.key = key;
-    for (const { id, age_seconds: seconds } of maps) {
-      const [cell, text] = [this.changed.get(id), age(seconds)];
-      if (cell.textContent !== text) cell.textContent = text;
+    for (const map of maps) {
+      const { changed, left } = this.rows.get(map.id);
+      const words = map.seconds_left === null ? "" : `, ${seconds(map.seconds_left)} left`;
+      for (const [cell, text] of [
+        [changed, age(map.age_seconds)],
+        [left, words],
+      ]) {
+        if (cell.textContent !== text) cell.textContent = text;
+      }
     }
   }
 
-  #build(maps) {
+  #build() {
     const head = make("tr", {}, ...WORDS.map((word) => make("th", { scope: "col" }, word)));
     const [table, focused] = [element("maps-table"), document.activeElement?.dataset?.map];
-    this.changed.clear();
-    const rows = maps.map((map) => this.#row(map));
+    this.rows.clear();
+    const rows = this.maps.map((map) => this.#row(map));
     table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...rows));
+    this.thumbnails.keep(this.maps);
+    this.#filter();
     if (focused) table.querySelector(`[data-map="${focused}"]`)?.focus();
   }
 
+  /** Shows the maps of which the words of the search are said. */
+  #filter() {
+    const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let count = 0;
+    for (const map of this.maps) {
+      const found = isFound(map, words);
+      this.rows.get(map.id).row.hidden = !found;
+      count += Number(found);
+    }
+    const { length } = this.maps;
+    this.none.textContent = words.length > 0 ? `${count} of ${length} maps` : "";
+  }
+
   #row(map) {
-    const share = map.cells ? Math.floor((100 * map.cells_done) / map.cells) : 0;
-    const partial = ["running", "interrupted"].includes(map.state);
-    const state = partial ? `${map.state}, ${share} %` : map.state;
     const axes = (map.axes ?? []).map(({ symbol, points }) => `${symbol} (${points})`).join(" × ");
     const button = make("button", { type: "button", className: "link" }, map.name);
     button.dataset.map = map.id;
@@ -88,16 +124,25 @@ export class MapList {
       this.#open(false);
       this.told.chosen(map.id);
     });
-    const texts = [
-      map.why ? `${state}: ${map.why}` : state,
-      axes,
-      (map.fields ?? []).join(", "),
-      map.cells ? map.cells.toLocaleString("en") : "",
-    ];
-    const changed = make("td");
-    this.changed.set(map.id, changed);
-    const cells = texts.map((text) => make("td", {}, text));
-    const name = make("th", { scope: "row" }, button);
-    return make("tr", { className: map.state }, name, ...cells, changed);
+    const title = make("span", { className: "title" }, map.title ?? "");
+    const named = make("span", { className: "named" }, button, title);
+    const thumbnail = this.thumbnails.of(map);
+    const name = make("th", { scope: "row" }, make("span", { className: "map" }, thumbnail, named));
+    const [changed, left] = [make("td"), make("span")];
+    const cells = map.cells ? `${map.cells.toLocaleString("en")} cells` : "";
+    const size = make("td", {}, cells, make("span", { className: "bytes" }, bytes(map.bytes)));
+    const others = [axes, (map.fields ?? []).join(", ")].map((text) => make("td", {}, text));
+    const state = make("td", {}, ...this.#state(map), left);
+    const row = make("tr", { className: map.state }, name, state, ...others, size, changed);
+    this.rows.set(map.id, { row, changed, left });
+    return row;
+  }
+
+  /** The state of a map in words, and how far it is. */
+  #state({ name, state, why, cells, cells_done: done }) {
+    if (!["running", "interrupted"].includes(state)) return [why ? `${state}: ${why}` : state];
+    const share = cells ? Math.floor((100 * done) / cells) : 0;
+    const bar = make("progress", { max: cells || 1, value: done ?? 0, "aria-label": name });
+    return [bar, `${state}, ${share} %`];
   }
 }

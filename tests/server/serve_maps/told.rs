@@ -108,6 +108,7 @@ fn the_first_view_is_that_of_the_picture_and_the_list_tells_titles_and_sizes() {
         assert_eq!(listed["title"], "A slope of 0");
         let size = std::fs::metadata(folder.path().join(name)).unwrap().len();
         assert_eq!(listed["bytes"], size);
+        assert_eq!(listed["seconds_left"], Value::Null, "it is complete");
         let scalars = told["scalars"].as_array().unwrap().iter();
         let told: Vec<_> = scalars.filter(|of| of["told"] == true).collect();
         assert!(told.iter().any(|of| of["name"] == "mu_prime"));
