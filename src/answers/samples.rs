@@ -1,6 +1,6 @@
 //! The samples of a motion, up to a limit.
 
-use super::trace::Sample;
+use super::trace::{Sample, Trace};
 
 /// What happens to samples beyond a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,10 +87,32 @@ impl Samples {
     }
 }
 
+impl Trace {
+    /// The same trace with `most` samples at most, unless there are more events: of the others
+    /// every second one goes, again and again, but for the first and the last.
+    #[must_use]
+    pub fn thinned(self, most: usize) -> Self {
+        let mut events = self.events.iter().map(|event| event.t).peekable();
+        let last = self.samples.len().saturating_sub(1);
+        let mut kept = Samples::new(Most::Thinned(most));
+        for (place, sample) in self.samples.iter().enumerate() {
+            while events.next_if(|&t| t < sample.t).is_some() {}
+            let at_event = events.peek().is_some_and(|&t| t <= sample.t);
+            kept.add(at_event || place == 0 || place == last, || *sample);
+        }
+        Self {
+            samples: kept.into_vec(),
+            ..self
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slip::motion::Mode;
+    use crate::answers::trace::TraceEvent;
+    use crate::slip::motion::{Event, Mode};
+    use crate::slip::outcome::{Outcome, Summary};
 
     fn at(t: f64) -> Sample {
         Sample {
@@ -117,6 +139,31 @@ mod tests {
         let widest = times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         assert!(widest <= 256.0, "{widest}");
         assert!(times.windows(2).all(|w| w[0] < w[1]));
+    }
+
+    #[test]
+    fn a_trace_keeps_its_events_and_its_ends() {
+        let event = |t: f64| TraceEvent {
+            t,
+            kind: Event::Release,
+            a: 0.0,
+        };
+        let trace = Trace {
+            samples: (0..5000_u32).map(|i| at(f64::from(i))).collect(),
+            events: [0.5, 7.0, 8.0, 4321.0].map(event).into(),
+            summary: Summary::without(Outcome::Sliding),
+        };
+        let few = trace.clone().thinned(60);
+        let times: Vec<f64> = few.samples.iter().map(|s| s.t).collect();
+        assert!((30..=60).contains(&times.len()), "{}", times.len());
+        assert!(times.windows(2).all(|w| w[0] < w[1]));
+        assert!(
+            [0.0, 7.0, 8.0, 4321.0, 4999.0]
+                .iter()
+                .all(|t| times.contains(t))
+        );
+        assert_eq!(few.events, trace.events);
+        assert_eq!(trace.clone().thinned(5000).samples, trace.samples);
     }
 
     #[test]

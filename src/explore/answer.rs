@@ -17,6 +17,7 @@ use super::motion::{self, Followed};
 use super::point::Point;
 use super::problem::Problem;
 use super::stability::Wanted;
+use super::systems::KnownSystem;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
 use crate::answers::best::default_ranges;
@@ -30,6 +31,9 @@ use crate::sweep::plan::memory;
 
 /// Number of roots in the answer for a point.
 pub const ROOTS: u8 = 16;
+
+/// The command for the point of a system that is no part of the program.
+const POINT_OF_FILE: &str = "slipmap point --setting=point.toml";
 
 /// The kind of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,13 +54,15 @@ pub enum Request {
     Setting,
     /// The parameters of a friction law that is a formula.
     Formula,
+    /// A system, from the text of its file.
+    System,
     /// All parameters, laws and fields; its text is empty.
     Parameters,
 }
 
 impl Request {
     /// The requests that are answered.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Chart,
         Self::Point,
         Self::CriticalVelocity,
@@ -65,6 +71,7 @@ impl Request {
         Self::Law,
         Self::Setting,
         Self::Formula,
+        Self::System,
         Self::Parameters,
     ];
 
@@ -80,6 +87,7 @@ impl Request {
             Self::Law => "law",
             Self::Setting => "setting",
             Self::Formula => "formula",
+            Self::System => "system",
             Self::Parameters => "parameters",
         }
     }
@@ -122,7 +130,8 @@ pub struct WithCommand<T> {
     /// The answer.
     #[serde(flatten)]
     pub answer: T,
-    /// The command line; none where flags cannot say it.
+    /// The command line; none where flags cannot say it. That of a system that is no part of the
+    /// program reads the text of the request from `point.toml`.
     #[cfg_attr(feature = "serve", schema(required))]
     pub command: Option<String>,
     /// What it assumes of friction at velocities that were not measured; null where it assumes
@@ -150,6 +159,8 @@ pub enum Asked {
     Setting(GivenSetting),
     /// [`Request::Formula`].
     Formula(KnownFormula),
+    /// [`Request::System`].
+    System(Box<KnownSystem>),
     /// [`Request::Parameters`].
     Parameters,
 }
@@ -186,6 +197,7 @@ impl Asked {
             Request::Law => Self::Law(point(PointOf::Law)?, remarks.clone()),
             Request::Setting => Self::Setting(GivenSetting::read(text, limits.chart.points)?),
             Request::Formula => Self::Formula(KnownFormula::read(text)?),
+            Request::System => Self::System(Box::new(KnownSystem::read(text)?)),
             Request::Parameters => Self::Parameters,
         })
     }
@@ -203,6 +215,7 @@ impl Asked {
             | Self::Law(..)
             | Self::Setting(_)
             | Self::Formula(_)
+            | Self::System(_)
             | Self::Parameters => 0,
         }
     }
@@ -217,6 +230,7 @@ impl Asked {
             | Self::Law(..)
             | Self::Setting(_)
             | Self::Formula(_)
+            | Self::System(_)
             | Self::Parameters => false,
         }
     }
@@ -245,9 +259,11 @@ impl Asked {
                 if stop.is_set() {
                     return Err(Problem::stopped());
                 }
+                let of_file = || setting.system().map(|_| POINT_OF_FILE.to_owned());
                 json(&WithCommand {
                     answer,
                     command: point_command(setting)
+                        .or_else(of_file)
                         .map(|command| format!("{command} --roots={ROOTS}")),
                     warning: setting.curve_remark(units),
                 })
@@ -283,6 +299,7 @@ impl Asked {
             }),
             Self::Setting(setting) => json(setting),
             Self::Formula(formula) => json(formula),
+            Self::System(system) => json(system),
             Self::Parameters => json(&Known::all()),
         }
     }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::systems::KnownSystem;
 use crate::linear::status::MOST_COUNTED;
 use crate::meaning::flags::flags;
 use crate::meaning::legend::{Entry, Mark, classes};
@@ -30,6 +31,8 @@ pub struct Known {
     pub fields: Vec<KnownField>,
     /// The flags of a cell's status.
     pub flags: Vec<KnownFlag>,
+    /// Systems that can stand in the place of the block.
+    pub systems: Vec<KnownSystem>,
 }
 
 /// A parameter.
@@ -53,7 +56,8 @@ pub struct KnownParameter {
     pub range: [f64; 2],
     /// The same in words.
     pub allowed: String,
-    /// What it belongs to: `model`, `sliding`, `pull`, `law`, `start` or `limit`.
+    /// What it belongs to: `model`, `sliding`, `pull`, `law`, `start`, `limit` or, of what only one
+    /// system has, `system`.
     pub group: &'static str,
     /// The flag that gives it on the command line, if there is one.
     #[cfg_attr(feature = "serve", schema(required))]
@@ -67,14 +71,15 @@ pub struct KnownParameter {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownPage {
-    /// The value at first; none where it is the default.
+    /// The value at first, of a limit once it is on; none where it is the default.
     #[cfg_attr(feature = "serve", schema(required))]
     pub first: Option<f64>,
     /// The ends of its slider.
     pub slider: [f64; 2],
     /// The ends of its axis at first.
     pub axis: [f64; 2],
-    /// The box that folds its slider away: `feedback` or `model`; none where it is in sight.
+    /// The box that folds its slider away: `feedback`, `model` or, of what is off at first,
+    /// `limits`; none where it is in sight.
     #[cfg_attr(feature = "serve", schema(required))]
     pub folded: Option<&'static str>,
 }
@@ -181,6 +186,7 @@ impl Known {
             laws: formulas.chain([table, KnownLaw::of_example()]).collect(),
             fields: Field::ALL.map(KnownField::of).into(),
             flags: KnownFlag::all(),
+            systems: KnownSystem::shipped(),
         }
     }
 }
@@ -213,8 +219,9 @@ impl KnownParameter {
         }
     }
 
-    /// A parameter that only one formula has. Nothing is known of its size.
-    fn own(own: &OwnParameter) -> Self {
+    /// A parameter that only one formula or one system has, in this group, and how the page offers
+    /// it.
+    pub(super) fn own(own: &OwnParameter, group: &'static str, page: Option<KnownPage>) -> Self {
         Self {
             name: own.name.clone(),
             symbol: own.name.clone(),
@@ -224,15 +231,22 @@ impl KnownParameter {
             default: None,
             range: [own.minimum, own.maximum],
             allowed: own.allowed(),
-            group: Group::Law.name(),
+            group,
             flag: None,
-            page: Some(KnownPage {
-                first: Some(1.0),
-                slider: [0.0, 2.0],
-                axis: [0.0, 2.0],
-                folded: None,
-            }),
+            page,
         }
+    }
+
+    /// A parameter that only one formula has. Nothing is known of its size.
+    fn of_formula(own: &OwnParameter) -> Self {
+        let ends = [0.0, 2.0];
+        let page = KnownPage {
+            first: Some(1.0),
+            slider: ends,
+            axis: ends,
+            folded: None,
+        };
+        Self::own(own, Group::Law.name(), Some(page))
     }
 }
 
@@ -247,7 +261,7 @@ impl KnownFormula {
             known: formula.known().iter().map(|p| p.name()).collect(),
             own: formula
                 .own()
-                .map(|(own, _)| KnownParameter::own(own))
+                .map(|(own, _)| KnownParameter::of_formula(own))
                 .collect(),
         })
     }
@@ -376,7 +390,7 @@ mod tests {
             let mut all = known.parameters.iter();
             all.any(|known| known.name == name && known.page.is_some())
         };
-        for law in known.laws.iter().filter(|law| law.motions) {
+        for law in &known.laws {
             let those = law.parameters.iter().filter(|name| offered(name));
             assert_eq!(those.count(), law.needed, "{}", law.name);
         }

@@ -15,7 +15,8 @@
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`given_setting`]: what a file says of a setting
-//! - [`known`]: all parameters, friction laws and fields
+//! - [`known`]: all parameters, friction laws and fields; [`systems`]: the systems in the place of
+//!   the block
 //! - [`mod@answer`]: all of these by the names of requests; [`problem`]: the reply where there is
 //!   no answer
 //!
@@ -45,6 +46,7 @@ pub mod problem;
 pub mod robust;
 pub mod stability;
 pub mod stable_line;
+pub mod systems;
 pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]
 pub mod wasm;

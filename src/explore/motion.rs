@@ -37,7 +37,7 @@ impl Limits {
     }
 }
 
-/// A motion that was followed.
+/// A motion that was followed, now or before it was stored.
 #[derive(Debug, Clone)]
 pub struct Followed {
     /// Its case.
@@ -85,6 +85,24 @@ impl Followed {
             trace,
             speeds,
         })
+    }
+
+    /// A motion that is stored, with its samples thinned beyond the limit; its speeds are those of
+    /// the samples.
+    #[must_use]
+    pub fn stored(spec: CaseSpec, trace: Trace, limits: Limits) -> Self {
+        let mut speeds = Speeds::default();
+        for speed in trace.samples.iter().map(|sample| sample.x_dot.abs()) {
+            speeds = speeds.and(Speeds {
+                least: speed,
+                most: speed,
+            });
+        }
+        Self {
+            spec,
+            trace: trace.thinned(limits.samples),
+            speeds,
+        }
     }
 
     /// A remark on a block that went beyond the points of a measured friction law.

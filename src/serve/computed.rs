@@ -17,7 +17,8 @@ use crate::explore::best_answer::BestInPlane;
 use crate::explore::given_setting::GivenSetting;
 use crate::explore::known::{Known, KnownFormula};
 use crate::explore::law::LawCurve;
-use crate::explore::point::BlockPoint;
+use crate::explore::point::{BlockPoint, SystemPoint};
+use crate::explore::systems::KnownSystem;
 use crate::explore::vc::CriticalVelocity;
 use crate::explore::{self, Asked, Limits};
 
@@ -32,6 +33,7 @@ pub(super) fn routes() -> OpenApiRouter<Served> {
         .routes(routes!(law))
         .routes(routes!(setting))
         .routes(routes!(formula))
+        .routes(routes!(system))
         .routes(routes!(parameters))
 }
 
@@ -50,7 +52,20 @@ mod examples {
         v_s = 0.5\n\n[start]\nx_dot0 = 0.3535\n";
     pub(super) const LAW: &str = "[friction]\nlaw = \"stribeck\"\nmu0 = 0.4\nv_s = 0.5\n";
     pub(super) const SETTING: &str = POINT;
+    pub(super) const SYSTEM: &str = "title = \"Turning\"\nP = \"s^2 + 2*zeta*s + 1 + width\"\n\
+        Q = \"-width\"\n\n[parameters]\nzeta = { default = 0.02, minimum = 0 }\nwidth = 0\n";
     pub(super) const FORMULA: &str = "[friction]\nlaw = \"formula\"\nmu_k = \"mu0 + sigma*v\"\n";
+}
+
+/// A point of either kind, for the description of the interface.
+#[derive(utoipa::ToSchema)]
+#[serde(untagged)]
+#[allow(dead_code, reason = "only described")]
+enum AnyPoint {
+    /// Of the block.
+    Block(Box<WithCommand<BlockPoint>>),
+    /// Of a system.
+    System(Box<WithCommand<SystemPoint>>),
 }
 
 /// The answer to a text.
@@ -114,9 +129,10 @@ of_text! {
 of_text! {
     /// Linear stability at a point
     ///
-    /// The text has the tables `[fixed]`, `[friction]` and `[units]` of a sweep file.
+    /// The text has the tables `[fixed]`, `[friction]` and `[units]` of a sweep file. In the place
+    /// of `[friction]` there may be `system`: a table, or the name of a system of the program.
     fn point: "/api/v1/point", Point, POINT =>
-    description = "The point", body = WithCommand<BlockPoint>
+    description = "The point", body = AnyPoint
 }
 
 of_text! {
@@ -170,7 +186,15 @@ of_text! {
     description = "Its parameters", body = KnownFormula
 }
 
-/// All parameters, friction laws and fields
+of_text! {
+    /// A system, with its parameters and fields
+    ///
+    /// The text is that of a system file.
+    fn system: "/api/v1/system", System, SYSTEM =>
+    description = "The system", body = KnownSystem
+}
+
+/// All parameters, friction laws, fields, and systems of the program
 #[utoipa::path(
     get,
     path = "/api/v1/parameters",

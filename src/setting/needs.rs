@@ -363,6 +363,12 @@ pub(super) fn no_meaning(name: &str) -> Unmet {
     )
 }
 
+/// The fields that maps of this system have.
+pub(crate) fn fields_of_system(model: &SystemModel) -> impl Iterator<Item = Field> {
+    let has = |field: &Field| !field.of_limit() && not_of_system(*field, model).is_none();
+    Field::ALL.into_iter().filter(has)
+}
+
 /// The error of a field that a system from a file does not have.
 fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
     const OTHERS: &str = "n_unstable, abscissa, frequency, relaxation_time, reason and others are \

@@ -70,6 +70,8 @@ pub enum Folded {
     Feedback,
     /// The block, its spring and its load.
     Model,
+    /// Limits of the actuators, which matter to motions alone and are off at first.
+    Limits,
 }
 
 impl Folded {
@@ -79,6 +81,7 @@ impl Folded {
         match self {
             Self::Feedback => "feedback",
             Self::Model => "model",
+            Self::Limits => "limits",
         }
     }
 }
@@ -86,7 +89,7 @@ impl Folded {
 /// How the page in the browser offers a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
-    /// The value at first; that by default if there is none.
+    /// The value at first, of a limit once it is on; that by default if there is none.
     pub first: Option<f64>,
     /// The ends of its slider.
     pub slider: [f64; 2],
@@ -349,6 +352,7 @@ catalogue! {
                 value: "V",
                 help: "v_min, smallest velocity of the actuator, in motions [default: no limit]",
             }),
+            page: Some(Page::new([-1.0, 1.0], [-1.0, 1.0]).first(0.0).folded(Folded::Limits)),
             ..ROW
         };
         /// The largest pulling velocity of the actuator.
@@ -362,6 +366,7 @@ catalogue! {
                 value: "V",
                 help: "v_max, largest velocity of the actuator, in motions [default: no limit]",
             }),
+            page: Some(Page::new([0.05, 3.0], [0.1, 2.0]).first(1.0).folded(Folded::Limits)),
             ..ROW
         };
         /// The smallest load of the actuator.
@@ -377,6 +382,7 @@ catalogue! {
                 help: "Smallest load of the actuator, in motions; above 0 nothing lifts off \
                     [default: 0]",
             }),
+            page: Some(Page::new([0.0, 1.0], [0.0, 1.0]).first(0.1).folded(Folded::Limits)),
             ..ROW
         };
         /// The largest load of the actuator.
@@ -390,6 +396,7 @@ catalogue! {
                 value: "LOAD",
                 help: "Largest load of the actuator, in motions [default: no limit]",
             }),
+            page: Some(Page::new([0.1, 5.0], [0.2, 5.0]).first(2.0).folded(Folded::Limits)),
             ..ROW
         };
         /// R, the memory of the feedback.
@@ -535,6 +542,7 @@ catalogue! {
                 value: "V_STAR",
                 help: "v* of rate-and-state friction, where steady sliding has μ0",
             }),
+            page: Some(Page::new([0.01, 3.0], [0.05, 2.0]).first(1.0)),
             ..ROW
         };
         /// A_f, the direct effect.
@@ -547,6 +555,7 @@ catalogue! {
                 value: "A",
                 help: "A_f of rate-and-state friction, the direct effect",
             }),
+            page: Some(Page::new([0.005, 1.0], [0.01, 0.5]).first(0.1)),
             ..ROW
         };
         /// B_f, the effect of evolution.
@@ -559,6 +568,7 @@ catalogue! {
                 value: "B",
                 help: "B_f of rate-and-state friction, the effect of evolution",
             }),
+            page: Some(Page::new([0.005, 1.0], [0.01, 1.0]).first(0.4)),
             ..ROW
         };
         /// D_c, the distance in which the state evolves.
@@ -572,6 +582,7 @@ catalogue! {
                 value: "D_C",
                 help: "D_c of rate-and-state friction, the distance in which the state evolves",
             }),
+            page: Some(Page::new([0.02, 5.0], [0.05, 3.0]).first(1.0)),
             ..ROW
         };
         /// c: the share of a change of the load that the state takes up at once.
@@ -587,6 +598,7 @@ catalogue! {
                 help: "c of rate-and-state friction: how much the state takes up of a change of \
                     the load [default: 0]",
             }),
+            page: Some(Page::new([0.0, 1.0], [0.0, 1.0])),
             ..ROW
         };
         /// μ_S, the static friction coefficient.

@@ -48,7 +48,8 @@ pub fn setting_text(
         let named = format!("system = {}\n", system.to_inline_table());
         let own = setting.own().filter(|(_, value)| !value.is_nan());
         let own = own.map(|(own, value)| format!("{} = {}\n", own.name, number(value)));
-        return named + &table("fixed", setting, wanted) + &own.collect::<String>();
+        let fixed = table("fixed", setting, wanted) + &own.collect::<String>();
+        return named + &fixed + &units_text(units);
     }
     let fixed = |p: Parameter| wanted(p) && p.group() != Group::Law;
     let mut text = table("fixed", setting, fixed);

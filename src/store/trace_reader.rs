@@ -27,6 +27,59 @@ pub struct TraceFile {
     pub trace: Trace,
 }
 
+/// What a trace says besides its samples and events.
+#[derive(Debug)]
+pub(crate) struct TraceHead {
+    /// The case, from its text in the file.
+    pub spec: CaseSpec,
+    /// Number of samples.
+    pub samples: u64,
+    /// The time of the last one.
+    pub until: f64,
+    /// How the motion ended up.
+    pub outcome: Outcome,
+    /// The version of the program that made it.
+    pub program_version: Option<String>,
+}
+
+impl TraceHead {
+    /// Reads the head of the trace at `path`.
+    ///
+    /// # Errors
+    /// As [`TraceFile::open`].
+    pub(crate) fn read(path: &Path) -> Result<Self, StoreError> {
+        let (file, spec) = opened(path)?;
+        let read = || -> hdf5::Result<_> {
+            let times = column::<f64>(&file, TIME.name, None)?;
+            let until = *times.last().ok_or(NO_SAMPLES)?;
+            Ok((times.len() as u64, until, outcome(&file)?))
+        };
+        let read = read().map_err(|why| StoreError::not_a_trace(path, why.to_string()));
+        let (samples, until, outcome) = read?;
+        Ok(Self {
+            spec,
+            samples,
+            until,
+            outcome,
+            program_version: text(&file, schema::root::PROGRAM_VERSION).ok(),
+        })
+    }
+}
+
+/// The file of the trace at `path`, and its case.
+fn opened(path: &Path) -> Result<(File, CaseSpec), StoreError> {
+    let file = open::to_read(path, StoreError::not_a_trace)?;
+    let spec = case_text(&file, path)?.parse::<CaseSpec>();
+    let spec = spec.map_err(|error| {
+        let why = format!("its case cannot be read: {}", error.message);
+        StoreError::not_a_trace(path, why)
+    })?;
+    Ok((file, spec))
+}
+
+/// Why a file without samples is no trace.
+const NO_SAMPLES: &str = "it has no samples";
+
 /// Whether the file at `path` can be opened and is marked as a trace, of any version.
 #[must_use]
 pub(crate) fn is_trace(path: &Path) -> bool {
@@ -67,12 +120,7 @@ impl TraceFile {
     /// # Errors
     /// When there is no file, or it is no trace, of another format version, or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let file = open::to_read(path, StoreError::not_a_trace)?;
-        let spec = case_text(&file, path)?.parse::<CaseSpec>();
-        let spec = spec.map_err(|error| {
-            let why = format!("its case cannot be read: {}", error.message);
-            StoreError::not_a_trace(path, why)
-        })?;
+        let (file, spec) = opened(path)?;
         let read = || -> hdf5::Result<Trace> {
             Ok(Trace {
                 samples: samples(&file)?,
@@ -144,7 +192,7 @@ fn named<T: Copy>(all: &[(T, &str)], number: u8) -> hdf5::Result<T> {
 fn samples(file: &File) -> hdf5::Result<Vec<Sample>> {
     let times = column::<f64>(file, TIME.name, None)?;
     if times.is_empty() {
-        return Err("it has no samples".into());
+        return Err(NO_SAMPLES.into());
     }
     let rows = Some(times.len());
     let modes = column::<u8>(file, trace::MODE, rows)?;
@@ -181,12 +229,15 @@ fn events(file: &File) -> hdf5::Result<Vec<TraceEvent>> {
         .collect()
 }
 
-fn summary(file: &File, switch_on: f64) -> hdf5::Result<Summary> {
+fn outcome(file: &File) -> hdf5::Result<Outcome> {
     let name = text(file, trace::OUTCOME)?;
-    let outcome = Outcome::ALL
-        .into_iter()
-        .find(|outcome| outcome.name() == name);
-    let outcome = outcome.ok_or("its outcome is none that there is")?;
+    let mut all = Outcome::ALL.into_iter();
+    let found = all.find(|outcome| outcome.name() == name);
+    found.ok_or_else(|| "its outcome is none that there is".into())
+}
+
+fn summary(file: &File, switch_on: f64) -> hdf5::Result<Summary> {
+    let outcome = outcome(file)?;
     let steps = one_number::<u64>(file, trace::STEPS).ok_or("it has no steps")?;
     let number = |name: &str| one_number::<f64>(file, name).unwrap_or(f64::NAN);
     let mut summary = Summary::of_numbers(outcome, steps, number);

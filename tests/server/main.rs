@@ -26,6 +26,8 @@ mod map_files;
 mod openapi;
 mod serve;
 mod serve_maps;
+mod systems;
+mod traces;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

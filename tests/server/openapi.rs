@@ -67,13 +67,21 @@ impl Described {
         required.extend(needed.filter_map(Value::as_str));
     }
 
+    /// Whether an object has all that its schema needs.
+    fn has_needed(&self, schema: &Value, value: &Value) -> bool {
+        let (mut known, mut required) = (Vec::new(), BTreeSet::new());
+        self.properties(schema, &mut known, &mut required);
+        required.into_iter().all(|name| value.get(name).is_some())
+    }
+
     /// A value is what its schema says: with all that it needs, and nothing that is not named.
     pub(crate) fn check(&self, schema: &Value, value: &Value, at: &str) {
         let schema = self.schema(schema);
         if let Some(choices) = schema["oneOf"].as_array() {
             let fits = |of: &&Value| {
                 let of = self.schema(of);
-                kinds(value).iter().any(|kind| has(of, kind)) || of.get("allOf").is_some()
+                kinds(value).iter().any(|kind| has(of, kind))
+                    || (of.get("allOf").is_some() && self.has_needed(of, value))
             };
             let fitting = choices.iter().find(fits);
             let fitting = fitting.unwrap_or_else(|| panic!("{at}: {value} is none of {schema}"));
@@ -209,6 +217,9 @@ fn answers_have_the_fields_that_are_named() {
         checked += 1;
     }
     assert!(checked >= 6, "{checked}");
+    let of_system = serving.ask("point", "system = \"turning\"\n[fixed]\ntau = 1\n");
+    let schema = described.answer("/api/v1/point", "post", "200");
+    described.check(schema, &of_system.json(), "a point of a system");
     let problem = serving.ask("point", "[fixed]\ntau = -1\n");
     let schema = &described.0["components"]["schemas"]["Problem"];
     described.check(schema, &problem.json(), "problem");
@@ -274,6 +285,29 @@ fn answers_about_maps_have_the_fields_that_are_named() {
         assert_eq!(answer.status, status, "{asked}");
         described.check(problem, &answer.json(), asked);
     }
+}
+
+/// So are answers about a trace.
+#[test]
+fn answers_about_traces_have_the_fields_that_are_named() {
+    let case = include_str!("../../sweeps/fig3a.toml");
+    let folder = Folder::with(&[("case.toml", case)]);
+    let made = folder.run(&["simulate", "case.toml", "-o", "trace.h5"]);
+    assert!(made.status.success(), "{}", program::err(&made));
+    let serving = Serving::new(&folder);
+    let described = Described::of(&serving);
+    let list = serving.get("/api/v1/maps").json();
+    described.check(
+        described.answer("/api/v1/maps", "get", "200"),
+        &list,
+        "list",
+    );
+    let address = format!("/api/v1/maps/{}", list["maps"][0]["id"].as_str().unwrap());
+    let schema = described.answer("/api/v1/maps/{id}", "get", "200");
+    described.check(schema, &serving.get(&address).json(), "trace");
+    let motion = serving.get(&format!("{address}/motion"));
+    let head = &described.0["components"]["schemas"]["MotionHead"];
+    described.check(head, &decoded(&motion.body).0, "motion of a trace");
 }
 
 /// Every address of the interface is described, with every parameter where it is.

@@ -14,14 +14,14 @@ use crate::sweep::Plan;
 /// The requests about a cell, as text; none for those that do not apply to it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct CellTexts {
-    /// A point of continuous sliding.
+    /// A point of continuous sliding, or of a system from a file.
     pub point: Option<String>,
     /// A problem of the critical velocity.
     pub vc: Option<String>,
     /// A case file: the motion from the cell's start.
     pub motion: Option<String>,
     /// The command line for the point or, if there is none, for the critical velocity; none for a
-    /// law that flags cannot express.
+    /// law or a system that flags cannot express.
     pub command: Option<String>,
 }
 
@@ -38,8 +38,10 @@ impl CellTexts {
                 ..Self::default()
             };
         }
+        let whole = || setting_text(&setting, &spec.units, |_| true);
         if setting.system().is_some() {
             return Self {
+                point: Some(whole()),
                 command: point_command(&setting),
                 ..Self::default()
             };
@@ -49,7 +51,7 @@ impl CellTexts {
         let delay = has(Parameter::Tau);
         let slides = setting.law().is_none() || has(Parameter::V0);
         let law = setting.law().is_some();
-        let point = (slides && delay).then(|| setting_text(&setting, &spec.units, |_| true));
+        let point = (slides && delay).then(whole);
         let no_v0 = |parameter| parameter != Parameter::V0;
         let protocol = spec
             .critical
@@ -134,6 +136,8 @@ mod tests {
     #[track_caller]
     fn assert_same(found: &Setting, expected: &Setting, but: &[Parameter]) {
         assert_eq!(found.law(), expected.law());
+        assert_eq!(found.system(), expected.system());
+        assert!(found.own().eq(expected.own()));
         for parameter in Parameter::ALL.into_iter().filter(|p| !but.contains(p)) {
             let bits = |setting: &Setting| setting.get(parameter).to_bits();
             assert_eq!(bits(found), bits(expected), "{}", parameter.name());
@@ -142,12 +146,14 @@ mod tests {
 
     const START: [Parameter; 3] = [Parameter::XDot0, Parameter::A0, Parameter::SwitchOnPhase];
 
+    /// A measured friction law.
+    const TABLE: &str = "[friction]\nlaw = \"table\"\nmu_s = 0.7\n\
+        speeds = [0.0, 0.1, 0.30000000000000004]\nmu_k = [0.6, 0.5, 0.1]\n";
+
     #[test]
     fn texts_are_read_as_the_setting_that_they_are_of() {
         let ranges = "tau = { from = 0.03, to = 3.0, points = 41, spacing = \"log\" }\n";
         let units = "[units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n";
-        let table = "[friction]\nlaw = \"table\"\nmu_s = 0.7\n\
-            speeds = [0.0, 0.1, 0.30000000000000004]\nmu_k = [0.6, 0.5, 0.1]\n";
         for (sweep, told) in [
             (
                 format!("[axes]\nmu_prime = [-0.1, -0.30000000000000004]\n{ranges}"),
@@ -162,7 +168,7 @@ mod tests {
                 [true, true, true],
             ),
             (
-                format!("[axes]\nv0 = [0.1, 0.2]\n{ranges}[fixed]\nalpha_v = -0.1\n{table}"),
+                format!("[axes]\nv0 = [0.1, 0.2]\n{ranges}[fixed]\nalpha_v = -0.1\n{TABLE}"),
                 [true, true, true],
             ),
             (
@@ -179,6 +185,21 @@ mod tests {
                  [simulation]\nhorizon = 900.5\ntolerance = 1e-9\nsteps = 12345\n"
                     .to_owned(),
                 [true, true, true],
+            ),
+            (
+                format!(
+                    "system = \"letter\"\n[axes]\nalpha_v = [-0.3, -0.1]\n{ranges}[fixed]\n\
+                     mu_prime = -0.30000000000000004\nlatency = 0.1\n{units}"
+                ),
+                [true, false, false],
+            ),
+            (
+                format!(
+                    "[system]\nP = \"s^2 + c*s + 1\"\nQ = \"k\"\n[system.parameters]\n\
+                     c = {{ default = 0.1, long_name = \"a \\\"word\\\"\" }}\nk = 0\n\
+                     [axes]\nk = [-0.3, -0.1]\n{ranges}"
+                ),
+                [true, false, false],
             ),
         ] {
             let plan = Plan::new(sweep.parse().unwrap()).unwrap();

@@ -6,17 +6,23 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::frames::{Ask, Frame, Kind, Refused, Request, fits};
-use super::{answers, description};
+use super::{answers, description, traces};
 use crate::maps::look::Look;
-use crate::store::StoreError;
+use crate::store::{StoreError, trace_reader};
 
 /// The most bytes of a request.
 const LONGEST_REQUEST: u64 = 1 << 16;
 
-/// The map, opened by the first request.
+/// What a file is.
+enum Contents {
+    Map(Look),
+    Trace(Box<traces::Opened>),
+}
+
+/// The map, or the trace, opened by the first request.
 struct Opened {
     path: PathBuf,
-    look: OnceLock<Result<Look, Refused>>,
+    contents: OnceLock<Result<Contents, Refused>>,
     /// Only one window is encoded at a time.
     one: Mutex<()>,
 }
@@ -32,7 +38,7 @@ pub fn read_map<W: Write + Send + 'static>(
 ) -> std::io::Result<()> {
     let opened = Arc::new(Opened {
         path: path.to_owned(),
-        look: OnceLock::new(),
+        contents: OnceLock::new(),
         one: Mutex::default(),
     });
     let answers = Arc::new(Mutex::new(answers));
@@ -66,30 +72,73 @@ pub fn read_map<W: Write + Send + 'static>(
 }
 
 impl Opened {
-    fn look(&self) -> Result<&Look, Refused> {
-        let open = || Look::open(&self.path).map_err(|error| refused(&error));
-        self.look.get_or_init(open).as_ref().map_err(Clone::clone)
+    fn contents(&self) -> Result<&Contents, Refused> {
+        let open = || match Look::open(&self.path) {
+            Err(StoreError::NotAMap { .. }) if trace_reader::is_trace(&self.path) => {
+                let opened = traces::Opened::of(&self.path);
+                opened.map(|trace| Contents::Trace(Box::new(trace)))
+            }
+            opened => opened.map(Contents::Map),
+        };
+        let open = || open().map_err(|error| refused(&error));
+        self.contents
+            .get_or_init(open)
+            .as_ref()
+            .map_err(Clone::clone)
     }
 
     /// An answer, in two parts.
     fn answer(&self, ask: &Ask) -> Result<(Frame, Vec<u8>), Refused> {
-        let look = self.look()?;
-        if look.refresh().is_err() {
+        let contents = self.contents()?;
+        let is_there = match contents {
+            Contents::Map(look) => look.refresh().is_ok(),
+            Contents::Trace(trace) => trace.is_there(),
+        };
+        if !is_there {
             return Ok((frame(Kind::OtherMap, Vec::new()), Vec::new()));
         }
-        let answer = match ask {
-            Ask::Summary => json(&description::summary(look, &self.path))?,
-            Ask::Description => json(&description::description(look))?,
-            Ask::Cell(query) => json(&answers::cell(look, query)?)?,
-            Ask::Sweep => frame(Kind::Text, description::sweep(look).into_bytes()),
-            Ask::Curves(query) => frame(Kind::Bytes, answers::curves(look, query)?),
-            Ask::Window(query) => {
-                let [head, arrays] = answers::window(look, query, &self.one)?;
-                return Ok((frame(Kind::Bytes, head), arrays));
-            }
-        };
-        Ok((answer, Vec::new()))
+        match contents {
+            Contents::Map(look) => of_map(look, &self.path, ask, &self.one),
+            Contents::Trace(trace) => Ok((of_trace(trace, ask)?, Vec::new())),
+        }
     }
+}
+
+/// An answer about the map at `path`, in two parts. `one` is locked while a window is encoded.
+fn of_map(
+    look: &Look,
+    path: &Path,
+    ask: &Ask,
+    one: &Mutex<()>,
+) -> Result<(Frame, Vec<u8>), Refused> {
+    let answer = match ask {
+        Ask::Summary => json(&description::summary(look, path))?,
+        Ask::Description => json(&description::description(look))?,
+        Ask::Cell(query) => json(&answers::cell(look, query)?)?,
+        Ask::Sweep => frame(Kind::Text, description::sweep(look).into_bytes()),
+        Ask::Curves(query) => frame(Kind::Bytes, answers::curves(look, query)?),
+        Ask::Window(query) => {
+            let [head, arrays] = answers::window(look, query, one)?;
+            return Ok((frame(Kind::Bytes, head), arrays));
+        }
+        Ask::Motion => return Err(Refused::asked("it is a map: it has cells, and no motion")),
+    };
+    Ok((answer, Vec::new()))
+}
+
+/// An answer about a trace.
+fn of_trace(trace: &traces::Opened, ask: &Ask) -> Result<Frame, Refused> {
+    Ok(match ask {
+        Ask::Summary => json(&trace.summary())?,
+        Ask::Description => json(&trace.description())?,
+        Ask::Sweep => frame(Kind::Text, trace.case().into_bytes()),
+        Ask::Motion => frame(Kind::Bytes, trace.motion()?),
+        Ask::Cell(_) | Ask::Curves(_) | Ask::Window(_) => {
+            return Err(Refused::asked(
+                "it is a trace: it has a motion, and no cells",
+            ));
+        }
+    })
 }
 
 /// Checks that an answer is short enough to send.
@@ -111,6 +160,7 @@ fn json(value: &impl serde::Serialize) -> Result<Frame, Refused> {
 fn refused(error: &StoreError) -> Refused {
     Refused::damaged(match error {
         StoreError::NotAMap { why, .. } => format!("it is not a map of slipmap: {why}"),
+        StoreError::NotATrace { why, .. } => format!("it is a damaged trace of slipmap: {why}"),
         StoreError::InUse { .. } => {
             return Refused::for_now("another program has it open for writing");
         }

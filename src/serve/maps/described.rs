@@ -1,5 +1,5 @@
-//! The types of answers about maps. They are written and described by the same definitions, and
-//! read where they come from a process.
+//! The types of answers about maps and traces. They are written and described by the same
+//! definitions, and read where they come from a process.
 
 use std::collections::BTreeMap;
 
@@ -142,6 +142,22 @@ pub(super) struct MapSummary {
     /// Seconds until the slowest shard that is computed is done, as far as that is known.
     #[schema(required)]
     pub seconds_left: Option<f64>,
+    /// The motion of a file that is a trace, and has no cells; null for a map.
+    #[schema(required)]
+    pub trace: Option<TraceSummary>,
+}
+
+/// What a trace says of its motion.
+#[derive(Debug, Clone, Serialize, Deserialize, ToSchema)]
+pub(super) struct TraceSummary {
+    /// Its samples.
+    pub samples: u64,
+    /// The time of the last one.
+    pub until: f64,
+    /// The unit of time; "1" where there is none.
+    pub unit: String,
+    /// How the motion ended up.
+    pub outcome: String,
 }
 
 /// An axis.
@@ -231,6 +247,33 @@ pub(super) struct MapFirst {
     /// The axis from bottom to top; none where only one has more than one value.
     #[schema(required)]
     pub y: Option<String>,
+}
+
+/// What a process tells of a trace.
+#[derive(Serialize, ToSchema)]
+pub(super) struct TraceTold {
+    /// The title of its case; it may be empty.
+    pub title: String,
+    /// Its motion.
+    pub trace: TraceSummary,
+    /// The parameters of its case.
+    pub scalars: Vec<MapScalar>,
+    /// The version of the program that made it.
+    #[schema(required)]
+    pub program_version: Option<String>,
+    /// The case file's text.
+    pub case: String,
+}
+
+/// What is described: a map or a trace.
+#[derive(ToSchema)]
+#[serde(untagged)]
+#[allow(dead_code, reason = "only described")]
+pub(super) enum AnyDescription {
+    /// Of a map.
+    Map(MapDescription<MapTold>),
+    /// Of a trace.
+    Trace(MapDescription<TraceTold>),
 }
 
 /// A field of a map.

@@ -10,6 +10,7 @@ use crate::meaning::scale::has_speeds;
 use crate::queue::progress::Watched;
 use crate::setting::quantity::Quantity;
 use crate::setting::search::LIMIT;
+use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
@@ -67,6 +68,7 @@ pub(super) fn summary(look: &Look, path: &Path) -> MapSummary {
                 progress.and_then(|progress| progress.seconds_left())
             },
         ),
+        trace: None,
     }
 }
 
@@ -160,13 +162,18 @@ fn scalars(look: &Look) -> Vec<MapScalar> {
     let facts = look.facts();
     let found = look.told(MapFile::scalars, |growing| growing.plan().spec.scalars());
     let units = facts.plan.as_ref().map(|plan| &plan.spec.units);
-    let told = |(of, value): (Quantity, f64)| MapScalar {
+    let told = |(of, value): (Quantity, f64)| scalar(&of, value, units);
+    found.into_iter().map(told).collect()
+}
+
+/// What is told of a parameter with this value.
+pub(super) fn scalar(of: &Quantity, value: f64, units: Option<&Units>) -> MapScalar {
+    MapScalar {
         name: of.name().to_owned(),
         symbol: of.symbol().to_owned(),
         long_name: of.long_name().to_owned(),
         unit: units.map_or("1".into(), |units| of.unit(units)),
-        told: first::is_told(&of, value),
+        told: first::is_told(of, value),
         value,
-    };
-    found.into_iter().map(told).collect()
+    }
 }

@@ -39,8 +39,10 @@ pub(super) enum Ask {
     Curves(CurvesQuery),
     /// One cell.
     Cell(CellQuery),
-    /// The sweep file's text.
+    /// The sweep file's text; of a trace that of its case.
     Sweep,
+    /// The motion of a trace.
+    Motion,
 }
 
 /// A window on a map.

@@ -1,4 +1,4 @@
-//! Maps from files: a list of those below a folder, and windows on them.
+//! Maps and traces from files: a list of those below a folder, windows on maps, motions of traces.
 //!
 //! ```text
 //! maps::scan: names below the folder → ids → [list] what a process of each tells, remembered
@@ -20,6 +20,7 @@
 //! - `readers`: asks the processes that read maps
 //! - `routes`: the addresses of requests about maps
 //! - `test_reader`: a process for tests that can be held
+//! - `traces`: the description and the motion of a trace as answers
 
 mod answers;
 mod child;
@@ -34,6 +35,7 @@ mod readers;
 mod routes;
 #[cfg(all(test, unix))]
 mod test_reader;
+mod traces;
 
 pub use child::read_map;
 pub use process::ReaderCommand;

@@ -11,6 +11,7 @@ use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
 use super::places::Places;
 use super::process::{ReaderCommand, Trouble};
+use crate::explore::motion;
 use crate::maps::scan::Found;
 use crate::serve::problem::Problem;
 use crate::serve::room::{Room, Taken};
@@ -74,6 +75,11 @@ impl Maps {
     /// Takes room for the curves of a plane.
     pub(super) async fn room_for_curves(&self) -> Result<Taken, Problem> {
         self.room.take(BYTES_OF_CURVES).await
+    }
+
+    /// Takes room for the motion of a trace.
+    pub(super) async fn room_for_motion(&self) -> Result<Taken, Problem> {
+        self.room.take(motion::Limits::default().bytes()).await
     }
 
     /// The answer of the process that reads a map.

@@ -11,7 +11,7 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::described::{CurvesHead, MapCell, MapDescription, MapList, MapTold, WindowHead};
+use super::described::{AnyDescription, CurvesHead, MapCell, MapDescription, MapList, WindowHead};
 use super::file;
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::{Maps, no_map};
@@ -33,6 +33,7 @@ where
         .routes(routes!(curves))
         .routes(routes!(cell))
         .routes(routes!(sweep))
+        .routes(routes!(motion))
         .routes(routes!(file::file))
         .with_state(maps)
 }
@@ -81,7 +82,7 @@ async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
     Ok(answered(maps.ask(&found, &ask).await?))
 }
 
-/// The maps below the folder
+/// The maps and traces below the folder
 #[utoipa::path(
     get,
     path = "/api/v1/maps",
@@ -95,14 +96,14 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
     axum::Json(maps.list.all().await)
 }
 
-/// Description of a map, without its cells
+/// Description of a map, without its cells, or of a trace
 #[utoipa::path(
     get,
     path = "/api/v1/maps/{id}",
     tag = "maps",
     params(("id" = String, Path, description = "as the list has it")),
     responses(
-        (status = 200, description = "The map", body = MapDescription<MapTold>),
+        (status = 200, description = "The map", body = AnyDescription),
         Denied,
         NoMap,
     ),
@@ -199,7 +200,7 @@ async fn cell(
     asked(&maps, &id, Ask::Cell(said(query)?)).await
 }
 
-/// The sweep file's text
+/// The sweep file's text; of a trace that of its case
 #[utoipa::path(
     get,
     path = "/api/v1/maps/{id}/sweep",
@@ -214,4 +215,27 @@ async fn cell(
 )]
 async fn sweep(State(maps): State<Arc<Maps>>, Named(id): Named) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Sweep).await
+}
+
+/// The motion of a trace
+///
+/// Of more than 20,000 samples every second one is left out until they are fewer, but for those at
+/// events. The answer is a head (`MotionHead`) and arrays, see the description of this interface.
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/motion",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it")),
+    responses(
+        (status = 200, description = "A motion", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn motion(State(maps): State<Arc<Maps>>, Named(id): Named) -> Result<Response, Problem> {
+    let found = found(&maps, &id).await?;
+    let room = maps.room_for_motion().await?;
+    let frame = maps.ask(&found, &Ask::Motion).await?;
+    Ok(room.send(ENCODED, frame.bytes))
 }

@@ -11,6 +11,10 @@ export const UNITS = {
   "mN,mm,s": "mN, mm, s",
   "nN,nm,us": "nN, nm, µs",
 };
+/** The model that is a system from a text. */
+export const FILE = "file";
+/** The units of a view; a system has those of its text. */
+export const unitsOf = ({ model, units }) => (model ? "" : units);
 /** How many times farther than its slider an axis is moved. */
 const FAR = 1000;
 /** An axis is not narrower than this part of its values: its cells would be the same numbers. */
@@ -27,18 +31,71 @@ export function withoutZero([from, to]) {
 
 export class Catalogue {
   /**
-   * @param {{parameters: object[], laws: object[], fields: object[], flags: object[]}} told as
-   *   slipmap answers
+   * @param {{parameters: object[], laws: object[], fields: object[], flags: object[],
+   *   systems: object[]}} told as slipmap answers
    */
-  constructor({ parameters, laws, fields, flags }) {
-    // The page follows motions under every law that it offers.
-    laws = laws.filter((law) => law.motions);
-    Object.assign(this, { parameters, laws, fields, flags });
+  constructor({ parameters, laws, fields, flags, systems }) {
+    Object.assign(this, { parameters, laws, fields, flags, systems });
+    // Systems by their texts, as they are told.
+    this.texts = new Map(systems.map((system) => [system.toml, system]));
     this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
     // The parameters of formulas, with those that only they have.
     this.formulas = new Map();
     const { formula, parameters: known } = this.law("formula");
     this.keep(formula, { known, own: [] });
+    for (const system of systems) this.#name(system.name, system);
+  }
+
+  /** Lets the own parameters of a system be found. Other models may have such names, too. */
+  #name(model, { own }) {
+    for (const parameter of own) this.byName.set(`${model}-${parameter.name}`, parameter);
+  }
+
+  /** The system of a view; null of the block. While its text has a mistake, that of before. */
+  system({ model, system, known }) {
+    if (!model) return null;
+    if (model !== FILE) return this.systems.find(({ name }) => name === model);
+    const found = this.texts.get(system) ?? this.texts.get(known) ?? this.systems[0];
+    if (this.named !== found) this.#name(FILE, found);
+    this.named = found;
+    return found;
+  }
+
+  /** The names by which the page knows the parameters of a view's system. */
+  ofSystem(state) {
+    const { own, others } = this.system(state);
+    const named = own.filter(({ page }) => page).map(({ name }) => `${state.model}-${name}`);
+    return [...named, ...others.filter((name) => this.about(name).page)];
+  }
+
+  /** The fields that can be shown of a view. */
+  shown(state) {
+    const system = this.system(state);
+    return SHOWN.filter((name) => !system || system.fields.includes(name));
+  }
+
+  /** The parameters that axes begin with: gains and the delay; a gain has no smallest value. */
+  #axesFirst(state, names) {
+    if (!state.model) return [...GAINS[state.control], "tau", ...names];
+    const own = names.filter((name) => this.about(name).group === "system");
+    const gains = own.filter((name) => this.about(name).range[0] < 0);
+    return [...(gains.length ? gains : own).slice(-1), "tau", ...names];
+  }
+
+  /** Whether a view is of a system, or of friction with a state: each cell of these takes longer. */
+  isGeneral(state) {
+    return state.model !== "" || (state.law !== "none" && !this.moves(state));
+  }
+
+  /** The limits of actuators that are on: they matter to motions alone. */
+  limits(state) {
+    const all = this.moves(state) ? this.folded("limits") : [];
+    return all.filter((name) => name in state.values);
+  }
+
+  /** Whether motions are followed of the model of a view. */
+  moves({ model, law }) {
+    return !model && Boolean(this.law(law)?.motions);
   }
 
   /** Keeps the parameters of a formula: names of `known` ones, and what its `own` ones are. */
@@ -138,7 +195,7 @@ export class Catalogue {
     ]) {
       const other = state[beside];
       if (names.includes(state[key].name) && state[key].name !== other.name) continue;
-      const wanted = [...GAINS[state.control], "tau", ...names];
+      const wanted = this.#axesFirst(state, names);
       const name = wanted.find((each) => each !== other.name);
       state[key] = this.axis(name, state, other, highest);
       mended = true;

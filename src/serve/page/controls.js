@@ -1,8 +1,10 @@
 // The form of the live chart: control, axes, parameters, friction law, units.
 
-import { SHOWN, UNITS, withoutZero } from "./catalogue.js";
+import { SHOWN, UNITS, unitsOf, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { learn, parted } from "./formula.js";
+import { buildLimits } from "./limits.js";
+import { ModelChoice } from "./model.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
 import { parametersOf, pointTexts } from "./sweep.js";
@@ -25,6 +27,8 @@ export class Controls {
    */
   constructor(state, catalogue, source, done) {
     Object.assign(this, { state, catalogue, source, ...done });
+    const mended = () => this.#mendAxes();
+    this.model = new ModelChoice(state, catalogue, source, { ...done, mended });
     this.#fill();
     this.#listen();
     this.build();
@@ -133,6 +137,7 @@ export class Controls {
     }
     [element("show").value, element("law").value] = [state.show, state.law];
     element("units").value = state.units;
+    this.model.build();
     for (const [id, key] of TABLE_INPUTS) element(id).value = state[key];
     this.#showFormula();
     const names = parametersOf(state, this.catalogue);
@@ -143,7 +148,13 @@ export class Controls {
     for (const box of ["feedback", "model"]) {
       const these = free.filter((name) => this.catalogue.about(name).page.folded === box);
       element(`${box}-sliders`).replaceChildren(...sliders(these));
+      const none = state.model !== "" && these.length === 0;
+      element(`${box}-sliders`).closest("details").hidden = none;
     }
+    buildLimits(state, this.catalogue, (name) => this.#slider(name), () => {
+      this.build();
+      this.changed();
+    });
     const legend = element("axes").querySelector("legend");
     const axes = [
       ["Across", "x", "y"],
@@ -285,15 +296,20 @@ export class Controls {
   /** Draws the friction law. */
   async #tellLaw() {
     const { state } = this;
-    element("law-part").hidden = state.law === "none";
+    element("law-part").hidden = state.law === "none" || state.model !== "";
     element("table-input").hidden = state.law !== "table";
     element("formula-input").hidden = state.law !== "formula";
-    if (state.law === "none") return;
+    if (element("law-part").hidden) return;
     const own = "an expression in v; other names in it get sliders";
     const { formula } = this.catalogue.law(state.law) ?? {};
     const told = formula ?? "a measured curve, monotone between its points";
     element("formula").textContent = state.law === "formula" ? own : told;
     this.laws?.abort();
+    const moves = this.catalogue.moves(state);
+    element("law-curve").closest(".plot").hidden = !moves;
+    // A law with a state is no curve.
+    if (!moves) element("law-told").textContent = element("law-remarks").textContent = "";
+    if (!moves) return;
     if (state.law === "formula" && !this.catalogue.formulas.has(state.formula)) {
       element("law-told").textContent = "";
       return;
@@ -330,7 +346,7 @@ export class Controls {
   /** What a law is at the working velocity, in words. */
   #lawAt({ v0, mu_k: mu, mu_prime: slope }) {
     const words = (name, value) =>
-      withUnit(told(value), unitOf(this.catalogue.about(name).dimension, this.state.units));
+      withUnit(told(value), unitOf(this.catalogue.about(name).dimension, unitsOf(this.state)));
     return (
       `at v0 = ${words("v0", v0)}: μ_K = ${told(mu)}, ` + `slope μ′ = ${words("mu_prime", slope)}`
     );

@@ -1,6 +1,6 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
-import { Catalogue, withoutZero } from "./catalogue.js";
+import { Catalogue, unitsOf, withoutZero } from "./catalogue.js";
 import { gapOf, isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
 import { copy, download, element } from "./dom.js";
@@ -10,6 +10,7 @@ import { learn } from "./formula.js";
 import { Helping } from "./helping.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
+import { learnSystem } from "./model.js";
 import { Panel, counted } from "./panel.js";
 import { PlaneView } from "./plane.js";
 import { ZOOM, follow, zoomed } from "./pointing.js";
@@ -19,7 +20,7 @@ import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
-import { addressOf, formulaOf, leavesTable, stateOf } from "./state.js";
+import { addressOf, leftOut, stateOf, textsOf } from "./state.js";
 import { Steps } from "./steps.js";
 import { pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
@@ -289,7 +290,7 @@ class Explorer {
   }
 
   #unit(dimension) {
-    return unitOf(dimension, this.state.units);
+    return unitOf(dimension, unitsOf(this.state));
   }
 
   /** What is asked at a point; the reason why nothing can be. */
@@ -352,10 +353,12 @@ class Explorer {
   #lookAt(point, title) {
     const { state, catalogue } = this;
     const where = [state.x, state.y].map(({ name }, i) => {
-      const { symbol, dimension } = catalogue.about(name);
-      return withUnit(`${symbol} = ${told(point[i], 9)}`, this.#unit(dimension));
+      const { symbol, dimension, unit } = catalogue.about(name);
+      const own = unit === "1" ? this.#unit(dimension) : unit;
+      return withUnit(`${symbol} = ${told(point[i], 9)}`, own);
     });
-    const about = { where: where.join(", "), start: state.start, title, at: point };
+    const fixed = catalogue.isGeneral(state);
+    const about = { where: where.join(", "), start: state.start, fixed, title, at: point };
     const { texts, error } = this.#asked(point);
     if (error) this.panel.refuse(error, about);
     else this.panel.look(texts, about);
@@ -558,12 +561,12 @@ class Explorer {
     window.addEventListener("hashchange", async () => {
       const { hash } = location;
       if (hash === this.#address()) return;
-      if (formulaOf(hash) !== null) await learnAddress(this.catalogue, this.source);
+      await learnAddress(this.catalogue, this.source);
       if (hash !== location.hash) return;
       const { table } = this.state;
       Object.assign(this.state, stateOf(location.hash, this.catalogue));
       // A table too long for an address is still here.
-      if (leavesTable({ ...this.state, table })) {
+      if (leftOut({ ...this.state, table })) {
         Object.assign(this.state, { table, notes: [] });
       }
       this.#tellNotes(this.state.notes);
@@ -601,16 +604,18 @@ class Explorer {
     });
     click("copy-link", (event) => {
       this.steps.put(this.#address());
-      const words = leavesTable(this.state) ? "Copied, without the table" : "Copied";
+      const left = leftOut(this.state);
+      const words = left ? `Copied, without the ${left}` : "Copied";
       copy(location.href, event.target, words);
     });
   }
 }
 
-/** Learns the parameters of the formula in the address; a mistake in it is told with the chart. */
+/** Learns the formula and the system in the address; a mistake is told with the chart. */
 async function learnAddress(catalogue, source) {
-  const formula = formulaOf(location.hash);
+  const { formula, system } = textsOf(location.hash);
   if (formula !== null) await learn(catalogue, source, formula).catch(() => {});
+  if (system !== null) await learnSystem(catalogue, source, system).catch(() => {});
 }
 
 async function begin() {

@@ -3,6 +3,7 @@
 import { bytes, seconds } from "./amounts.js";
 import { element, make } from "./dom.js";
 import { Thumbnails } from "./thumbnails.js";
+import { contentsOf } from "./trace.js";
 
 /** How often the list is looked at, while the page is seen; in milliseconds. */
 const LOOK = 2500;
@@ -119,7 +120,7 @@ export class MapList {
     const axes = (map.axes ?? []).map(({ symbol, points }) => `${symbol} (${points})`).join(" × ");
     const button = make("button", { type: "button", className: "link" }, map.name);
     button.dataset.map = map.id;
-    button.disabled = !(map.axes ?? []).length;
+    button.disabled = !(map.axes ?? []).length && !map.trace;
     button.addEventListener("click", () => {
       this.#open(false);
       this.told.chosen(map.id);
@@ -131,7 +132,10 @@ export class MapList {
     const [changed, left] = [make("td"), make("span")];
     const cells = map.cells ? `${map.cells.toLocaleString("en")} cells` : "";
     const size = make("td", {}, cells, make("span", { className: "bytes" }, bytes(map.bytes)));
-    const others = [axes, (map.fields ?? []).join(", ")].map((text) => make("td", {}, text));
+    const told = map.trace
+      ? [contentsOf(map.trace), map.trace.outcome]
+      : [axes, (map.fields ?? []).join(", ")];
+    const others = told.map((text) => make("td", {}, text));
     const state = make("td", {}, ...this.#state(map), left);
     const row = make("tr", { className: map.state }, name, state, ...others, size, changed);
     this.rows.set(map.id, { row, changed, left });
@@ -139,7 +143,8 @@ export class MapList {
   }
 
   /** The state of a map in words, and how far it is. */
-  #state({ name, state, why, cells, cells_done: done }) {
+  #state({ name, state: of, why, cells, cells_done: done, trace }) {
+    const state = trace ? "trace" : of;
     if (!["running", "interrupted"].includes(state)) return [why ? `${state}: ${why}` : state];
     const share = cells ? Math.floor((100 * done) / cells) : 0;
     const bar = make("progress", { max: cells || 1, value: done ?? 0, "aria-label": name });

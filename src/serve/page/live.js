@@ -10,6 +10,8 @@ import { Waiting } from "./waiting.js";
 
 /** Cells of a chart along x and y. */
 const CELLS = [800, 600];
+/** The same of what takes longer while something moves, without curves. */
+const FEWER_CELLS = [400, 300];
 /** How long nothing moves before it rests, in milliseconds. */
 const REST = 150;
 /** After this a chart is given up for a newer one, in milliseconds. */
@@ -70,8 +72,8 @@ export class Live {
   }
 
   /** The sweep file of what is set. */
-  text(state, cells = CELLS, fields = [...new Set(["n_unstable", state.show])]) {
-    return sweepOf(state, this.catalogue, cells, fields);
+  text(state, cells = CELLS, fields = [...new Set(["n_unstable", state.show])], curved = true) {
+    return sweepOf(state, this.catalogue, cells, fields, curved);
   }
 
   /** What is set has changed, and may change again soon. */
@@ -81,7 +83,9 @@ export class Live {
     this.set = this.stale.ask();
     const quick = QUICK.includes(state.show) ? state.show : "n_unstable";
     this.#want(state, [...new Set(["n_unstable", quick])], quick);
-    const all = [...new Set(["n_unstable", "abscissa", state.show])];
+    // What takes longer is looked for where it is shown.
+    const besides = this.catalogue.isGeneral(state) ? [] : ["abscissa"];
+    const all = [...new Set(["n_unstable", ...besides, state.show])];
     this.resting = setTimeout(() => this.#want(state, all, state.show, true), REST);
   }
 
@@ -93,7 +97,8 @@ export class Live {
 
   #want(state, fields, show, rests = false) {
     try {
-      const text = this.text(state, CELLS, fields);
+      const fewer = !rests && this.catalogue.isGeneral(state);
+      const text = this.text(state, fewer ? FEWER_CELLS : CELLS, fields, !fewer);
       const logs = [state.x.log, state.y.log];
       const { set } = this;
       const fixed = besides(state, this.catalogue);

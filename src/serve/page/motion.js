@@ -1,4 +1,4 @@
-// The motion from a start that can be dragged: in the phase plane and in time.
+// The motion from a start that can be dragged, or that of a trace: in the phase plane and in time.
 
 import { stopped } from "./asked.js";
 import { element, terms, warned } from "./dom.js";
@@ -12,6 +12,7 @@ const MOST_DRAWN = 6000;
 const REST = [0, 0];
 /** After this a motion is given up for one from another start, in milliseconds. */
 const PATIENCE = 500;
+const OF_TRACE = "Phase plane of the trace";
 const FORMER = "What is shown is of the start before; the motion from this one is not there yet.";
 
 export class MotionCard {
@@ -23,7 +24,10 @@ export class MotionCard {
   constructor(source, { moved, heard, words }) {
     Object.assign(this, { moved, heard, words });
     this.phase = element("phase");
+    this.label = this.phase.getAttribute("aria-label");
     this.start = REST;
+    /** The motion of a trace, which has no other start. */
+    this.stored = null;
     /** The case without its start, and the last answer: to which text and start, and what. */
     [this.text, this.last, this.wanted] = [null, {}, null];
     const ask = async ({ text, asked }, signal) => {
@@ -44,8 +48,23 @@ export class MotionCard {
     new ResizeObserver(() => this.#draw()).observe(this.phase);
   }
 
-  /** Follows the motion of a case, without its start; none: there is no law. */
-  look(text, start) {
+  /**
+   * Follows the motion of a case, without its start; none: there is no law.
+   * @param {string | null} text
+   * @param {number[] | null} start
+   * @param {object | null} stored the motion of a trace: then the case is the whole one, and
+   *   nothing is followed
+   */
+  look(text, start, stored = null) {
+    this.stored = stored;
+    this.phase.setAttribute("aria-label", stored ? OF_TRACE : this.label);
+    if (stored) {
+      const { x_dot: u, a } = stored.arrays;
+      [this.text, this.start] = [text, [u[0], a[0]]];
+      this.last = { text, asked: text, motion: stored };
+      this.#ask();
+      return;
+    }
     if (text !== this.text) {
       this.requests.stop();
       this.wanted = null;
@@ -58,6 +77,7 @@ export class MotionCard {
 
   /** The case file of what is shown. */
   case() {
+    if (this.stored) return this.text;
     const [u, a] = this.start;
     return `${this.text}\n[start]\nx_dot0 = ${u}\na0 = ${a}\n`;
   }
@@ -102,6 +122,7 @@ export class MotionCard {
       ["start-a", 1],
     ]) {
       const input = element(id);
+      input.disabled = Boolean(this.stored);
       if (document.activeElement !== input) input.value = this.start[at];
     }
   }
@@ -204,7 +225,7 @@ export class MotionCard {
       ];
     };
     phase.addEventListener("pointerdown", (event) => {
-      if (!this.motion) return;
+      if (!this.motion || this.stored) return;
       phase.setPointerCapture(event.pointerId);
       this.dragging = true;
       to(value(event));
@@ -221,7 +242,7 @@ export class MotionCard {
     phase.addEventListener("keydown", (event) => {
       const steps = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
       const step = steps[event.key];
-      if (!step || !this.motion) return;
+      if (!step || !this.motion || this.stored) return;
       event.preventDefault();
       const [a, u] = this.scales;
       const size = [0.02 * (u.to - u.from), 0.02 * (a.to - a.from)];

@@ -5,6 +5,7 @@ import { copy, element, make, terms, warned } from "./dom.js";
 import { MotionCard } from "./motion.js";
 import { drawDelays, drawRoots } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
+import { aboutSystem } from "./system.js";
 import { Waiting } from "./waiting.js";
 
 /** Intervals and roots that are told in words. */
@@ -85,14 +86,15 @@ export class Panel {
   /**
    * Asks for everything at a point. Until that is there, what is shown stays, with its heading.
    * @param {{point: string | null, vc: string | null, motion: string | null, v0?: number}} texts
-   * @param {{where: string, start: number[] | null, fixed?: boolean, title?: string}} about fixed: no other friction
-   *   law can be chosen; title: whose answers these are
+   * @param {{where: string, start: number[] | null, fixed?: boolean, title?: string,
+   *   at?: number[], stored?: object}} about fixed: no other friction law can be chosen; title:
+   *   whose answers these are; at: the point; stored: the motion, which is that of a trace
    */
   look(texts, about) {
     this.next = { texts, ...about, problem: null };
     this.points.want(texts.point);
     this.velocities.want(texts.vc);
-    this.motion.look(texts.motion, about.start);
+    this.motion.look(texts.motion, about.start, about.stored);
     clearTimeout(this.patience);
     this.patience = setTimeout(() => {
       this.patience = null;
@@ -138,14 +140,15 @@ export class Panel {
     const former = waits && !this.patience && !element("cards").hidden;
     element("point-stale").textContent = former ? FORMER : "";
     if (waits) return;
-    const { texts, where, fixed = false, title = "At the point" } = next;
-    element("point-title").textContent = title;
+    const { texts, where, fixed = false, title = "At the point", stored = null } = next;
+    element("point-title").textContent = stored ? "The trace" : title;
+    element("point-origin").textContent = stored ? "from the file" : "computed now";
     this.at = next.at ?? null;
     const problem = next.problem ?? points.error;
     element("point-where").textContent = where;
     element("point-problem").textContent = problem ? this.words(problem) : "";
     element("point-none").textContent = texts.vc === null ? NO_POINT : NO_V0;
-    element("point-none").hidden = Boolean(problem) || texts.point !== null;
+    element("point-none").hidden = Boolean(problem ?? stored) || texts.point !== null;
     element("cards").hidden = Boolean(problem) || Object.values(texts).every((t) => t === null);
     this.units = unitsOf(texts.point ?? texts.vc);
     this.#tellPoint(points.answer);
@@ -179,6 +182,17 @@ export class Panel {
     return this.#quantity(value, [0, 0, 1]);
   }
 
+  /** Stable intervals of the quantity with this symbol, in words. */
+  #intervals(symbol, found, truncated) {
+    if (!found) return "unknown";
+    const end = (to) => (to === null ? "∞" : this.#time(to));
+    const stable = found.slice(0, INTERVALS);
+    const words = stable.map(([from, to]) => `${told(from)} < ${symbol} < ${end(to)}`);
+    const more = found.length - stable.length;
+    if (more > 0) words.push(`${more}${truncated ? " or more" : ""} others`);
+    return words.join(", ") || "none";
+  }
+
   #tellPoint(point) {
     for (const card of ["sliding", "roots", "delays"]) element(`${card}-card`).hidden = !point;
     const before = this.point;
@@ -187,26 +201,29 @@ export class Panel {
     const { delay_margin_kind: kind } = point;
     const margin = kind === "finite" ? this.#time(point.delay_margin) : kind;
     const verdict = point.marginal ? "marginal" : point.stable ? "stable" : "unstable";
-    const interval = ([from, to]) => `${told(from)} < τ < ${to === null ? "∞" : this.#time(to)}`;
-    const intervals = point.stable_delays ?? [];
-    const stable = intervals.slice(0, INTERVALS).map(interval);
-    const more = intervals.length - stable.length;
-    if (more > 0) stable.push(`${more}${point.stable_delays_truncated ? " or more" : ""} others`);
+    const delays = this.#intervals("τ", point.stable_delays, point.stable_delays_truncated);
+    const latencies = this.#intervals(
+      "δ",
+      point.stable_latencies,
+      point.stable_latencies_truncated,
+    );
     const rate = unitOf([0, 0, -1], this.units);
     const root = ([re, im]) => withUnit(told(re) + (im === 0 ? "" : ` ± ${told(im)} i`), rate);
     const sure = point.certified ? "certified" : "not certified";
     const abscissa = point.abscissa === null ? "unknown" : withUnit(told(point.abscissa), rate);
+    const ofSystem = aboutSystem(point, (value) => this.#time(value));
+    element("sliding-title").textContent = ofSystem ? "System" : "Sliding";
     terms(element("point"), [
-      ["sliding is", `${verdict}, ${counted(point.n_unstable)}`],
-      ["slope μ′", this.#quantity(point.mu_prime, [0, -1, 1])],
+      [ofSystem ? "it is" : "sliding is", `${verdict}, ${counted(point.n_unstable)}`],
+      ...(ofSystem ?? [["slope μ′", this.#quantity(point.mu_prime, [0, -1, 1])]]),
       ["delay margin", margin],
       ["spectral abscissa", abscissa],
       ["rightmost roots", sure],
       ...warned(point),
     ]);
-    const none = point.stable_delays ? "none" : "unknown";
-    const delays = stable.length ? stable.join(", ") : none;
-    terms(element("intervals"), [["stable delays", delays]]);
+    const late = ofSystem && point.latency !== null;
+    const ofLatency = late ? [["stable latencies", latencies]] : [];
+    terms(element("intervals"), [["stable delays", delays], ...ofLatency]);
     const list = point.roots.slice(0, ROOTS).map((r) => make("li", {}, root(r)));
     element("root-list").replaceChildren(...list);
     this.#draw();

@@ -8,6 +8,7 @@ import { Newest } from "./newest.js";
 import { Scale, told } from "./scale.js";
 import { Slice } from "./slice.js";
 import { Problem } from "./source.js";
+import { showsTrace, tellTrace } from "./trace.js";
 
 /** How soon an unfinished view is asked for again, in milliseconds. */
 const AGAIN = 60;
@@ -40,6 +41,8 @@ export class Saved {
   constructor(source, state, plane, stale, told_) {
     Object.assign(this, { source, state, plane, stale, told: told_ });
     [this.map, this.curves, this.describing, this.remarks] = [null, new Map(), 0, []];
+    /** The trace that is shown in the place of a map. */
+    this.trace = null;
     this.windows = new Newest(
       (asked, signal) => {
         this.#askCurves(asked);
@@ -79,8 +82,8 @@ export class Saved {
   /** A map that has grown is described anew, and one that can be opened again. */
   #listed(maps) {
     const own = maps.find(({ id }) => id === this.state.map?.id);
-    if (!own?.axes?.length || this.seen === undefined) return;
-    const seen = `${own.cells_done} ${own.state}`;
+    if (!(own?.axes?.length || own?.trace) || this.seen === undefined) return;
+    const seen = seenOf(own);
     if (seen === this.seen) return;
     this.seen = seen;
     this.#describe();
@@ -119,7 +122,7 @@ export class Saved {
     this.#stop();
     [this.range, this.looked, this.toldCell] = [null, null, null];
     this.#blank("Map");
-    [this.map, this.place, this.plane.view] = [null, null, null];
+    [this.map, this.trace, this.place, this.plane.view] = [null, null, null, null];
     if (other) element("map").hidden = element("slice-part").hidden = true;
     if (this.source.map) await this.#describe();
     else this.#notOpened(new Problem(NO_SERVER));
@@ -128,7 +131,8 @@ export class Saved {
   /** No map is looked at any more. */
   close() {
     this.#stop();
-    this.map = null;
+    [this.map, this.trace] = [null, null];
+    showsTrace(false);
     element("origin").hidden = false;
     if (this.seen !== undefined) this.#blank("Chart");
     this.seen = undefined;
@@ -161,9 +165,11 @@ export class Saved {
     try {
       const map = await this.source.map(id);
       if (number !== this.describing) return;
+      if (map.trace) return await this.#openTrace(map, number);
+      showsTrace(false);
       const before = this.map;
-      this.map = map;
-      this.seen = `${map.cells_done} ${map.state}`;
+      [this.map, this.trace] = [map, null];
+      this.seen = seenOf(map);
       // Another file may have taken the name.
       const other = before && JSON.stringify(before.axes) !== JSON.stringify(map.axes);
       if (other) [this.range, this.place] = [null, null];
@@ -177,10 +183,27 @@ export class Saved {
     }
   }
 
+  /** Shows the motion of a trace. */
+  async #openTrace(trace, number) {
+    const motion = await this.source.stored(trace.id);
+    if (number !== this.describing) return;
+    this.#stop();
+    [this.map, this.trace, this.plane.view, this.seen] = [null, trace, null, seenOf(trace)];
+    this.#blank("Trace");
+    showsTrace(true);
+    element("map").hidden = element("origin").hidden = false;
+    tellTrace(trace);
+    const texts = { point: null, vc: null, motion: trace.case };
+    this.told.look(texts, { where: trace.name, fixed: true, stored: motion });
+    this.told.changed();
+  }
+
   #notOpened(error) {
     // Who does not answer may do so later; then everything is asked for anew.
     if (error.status) {
       this.#stop();
+      this.trace = null;
+      showsTrace(false);
       [this.map, this.plane.view, this.seen] = [null, null, this.seen ?? ""];
       this.#blank("No map");
       terms(element("cell"), []);
@@ -592,14 +615,19 @@ export class Saved {
   }
 
   name() {
-    return (this.map?.name ?? "map").replace(/\.h5$/, "").replace(/[^\w.-]+/g, "_");
+    return ((this.map ?? this.trace)?.name ?? "map").replace(/\.h5$/, "").replace(/[^\w.-]+/g, "_");
   }
 
   async sweepText() {
-    if (!this.map) throw new Problem({ detail: "No map is open.", status: 404 });
-    return this.source.sweepText(this.map.id);
+    const { id } = this.map ?? this.trace ?? {};
+    if (!id) throw new Problem({ detail: "No map is open.", status: 404 });
+    return this.source.sweepText(id);
   }
 }
+
+/** What of a map or a trace tells, in the list too, that there is more to be seen. */
+const seenOf = ({ trace, cells_done: done, state }) =>
+  trace ? JSON.stringify(trace) : `${done} ${state}`;
 
 /** Numbers that JSON has not. */
 const WORDS = { inf: "∞", "-inf": "−∞", null: "no value" };

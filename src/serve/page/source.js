@@ -106,12 +106,14 @@ function server() {
     law: (toml, signal) => json(post("law", toml, signal)),
     setting: (toml, signal) => json(post("setting", toml, signal)),
     formula: (toml, signal) => json(post("formula", toml, signal)),
+    system: (toml, signal) => json(post("system", toml, signal)),
     parameters: (signal) => json(get("parameters", signal)),
     maps: (signal) => json(get("maps", signal)),
     map: (id, signal) => json(get(`maps/${id}`, signal)),
     window: (id, query, signal) => decoded(get(of(id, "window", query), signal)),
     curves: (id, query, signal) => decoded(get(of(id, "curves", query), signal)),
     cell: (id, query, signal) => json(get(of(id, "cell", query), signal)),
+    stored: (id, signal) => decoded(get(`maps/${id}/motion`, signal)),
     sweepText: async (id, signal) => (await get(`maps/${id}/sweep`, signal)).text(),
     jobs: (signal) => json(get("jobs", signal)),
     job: (name, signal) => json(get(job(name), signal)),
@@ -251,6 +253,7 @@ function page() {
     law: (toml, signal) => json("law", toml, signal),
     setting: (toml, signal) => json("setting", toml, signal),
     formula: (toml, signal) => json("formula", toml, signal),
+    system: (toml, signal) => json("system", toml, signal),
     parameters: (signal) => json("parameters", "", signal),
   };
 }

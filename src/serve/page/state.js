@@ -1,10 +1,15 @@
 // The whole view as an address, short enough to be sent and readable: `#v=1&x=alpha_v,-1,0.2&…`.
 
-import { GAINS, SHOWN, UNITS } from "./catalogue.js";
+import { FILE, GAINS, UNITS } from "./catalogue.js";
 import { parametersOf } from "./sweep.js";
 
 /** What the page shows when the address says nothing: the letter's Fig. 2(a). */
 const START = {
+  // The block on its spring; else the name of a system, or that of one from a text.
+  model: "",
+  // The text of such a system, and the last one that was understood.
+  system: "",
+  known: "",
   control: "velocity",
   x: { name: "alpha_v", from: -1.6, to: 0.4, log: false },
   y: { name: "tau", from: 0, to: 12, log: false },
@@ -27,20 +32,27 @@ const START = {
 
 /** The first word of every address that this page understands. */
 const VERSION = "1";
-/** A table of friction that takes more characters has no place in an address. */
-const LONGEST_TABLE = 1500;
+/** A table of friction or a system that takes more characters has no place in an address. */
+const LONGEST_TEXT = 1500;
 
 const number = (text) => (text.trim() === "" ? NaN : Number(text));
 const numbers = (text) => text.split(",").map(number);
 
-const tableText = ({ law, table }) => (law === "table" ? table.trim() : "");
+const tableText = ({ model, law, table }) => (!model && law === "table" ? table.trim() : "");
+const systemText = ({ model, system }) => (model === FILE ? system.trim() : "");
 
-/** Whether the friction law of a view is too long for its address. */
-export const leavesTable = (state) => !state.map && tableText(state).length > LONGEST_TABLE;
+/** What of a view is too long for its address, in a word; null where nothing is. */
+export function leftOut(state) {
+  if (state.map) return null;
+  if (systemText(state).length > LONGEST_TEXT) return "system";
+  return tableText(state).length > LONGEST_TEXT ? "table" : null;
+}
 
-/** The formula of an address; null if it says none. */
-export const formulaOf = (fragment) =>
-  new URLSearchParams(fragment.replace(/^#/, "")).get("formula");
+/** The formula and the system of an address; null where it says none. */
+export function textsOf(fragment) {
+  const said = new URLSearchParams(fragment.replace(/^#/, ""));
+  return { formula: said.get("formula"), system: said.get("system") };
+}
 
 /** The word for a parameter in an address: names that only a formula has could be other words. */
 const wordOf = (name, own) => (own.includes(name) ? `own.${name}` : name);
@@ -67,19 +79,24 @@ export function addressOf(state, catalogue) {
     for (const key of ["xlog", "ylog"]) if (map[key]) put(key, 1);
     for (const [name, index] of Object.entries(map.at ?? {})) put(`at.${name}`, index);
   } else {
-    put("control", state.control);
+    const { model } = state;
+    const law = model ? "none" : state.law;
+    if (model) put("model", model);
+    else put("control", state.control);
     put("x", axis(state.x));
     put("y", axis(state.y));
     const own = catalogue.own(state);
-    for (const name of parametersOf(state, catalogue))
+    for (const name of [...parametersOf(state, catalogue), ...catalogue.limits(state)])
       if (name in state.values) put(wordOf(name, own), state.values[name]);
-    if (state.law !== "none") put("law", state.law);
-    if (state.law === "formula") put("formula", state.formula);
+    const system = systemText(state);
+    if (system && system.length <= LONGEST_TEXT) put("system", state.system);
+    if (law !== "none") put("law", law);
+    if (law === "formula") put("formula", state.formula);
     const table = tableText(state);
-    if (table.length <= LONGEST_TABLE && table) put("table", table);
+    if (table.length <= LONGEST_TEXT && table) put("table", table);
     if (table && state.columns) put("columns", state.columns);
     if (table && state.speedUnit) put("speed_unit", state.speedUnit);
-    if (state.units) put("units", state.units);
+    if (!model && state.units) put("units", state.units);
     if (state.show !== START.show) put("show", state.show);
     if (state.point) put("at", state.point.join(","));
   }
@@ -147,9 +164,22 @@ function mapOf(said) {
   };
 }
 
+/** Sets the model of a view; a system whose text is understood. */
+function readModel(state, get, catalogue) {
+  const [model, text] = [get("model"), get("system")];
+  if (!model) return;
+  if (model === FILE && text === null) {
+    state.notes.push("its system was too long: paste it again");
+  } else if (model === FILE || catalogue.systems.some(({ name }) => name === model)) {
+    [state.model, state.system] = [model, text ?? ""];
+  } else {
+    state.notes.push(`"${model}" is no model of the live chart`);
+  }
+}
+
 /**
- * The view of an address, whose formula is known already. What it does not say, or not in an
- * understandable way, is as at the start, and `notes` tell of it.
+ * The view of an address, whose formula and system are known already. What it does not say, or not
+ * in an understandable way, is as at the start, and `notes` tell of it.
  * @param {string} fragment
  * @param {import("./catalogue.js").Catalogue} catalogue
  */
@@ -169,11 +199,12 @@ export function stateOf(fragment, catalogue) {
     state.map = mapOf(said);
     return state;
   }
+  readModel(state, get, catalogue);
   for (const [key, what, offered] of [
     ["control", "control", Object.keys(GAINS)],
     ["law", "friction law", ["none", ...catalogue.laws.map(({ name }) => name)]],
     ["units", "units", Object.keys(UNITS)],
-    ["show", "field", SHOWN],
+    ["show", "field", catalogue.shown(state)],
   ]) {
     const value = get(key);
     if (value === null) continue;
@@ -185,7 +216,8 @@ export function stateOf(fragment, catalogue) {
   if (get("table")) state.table = get("table");
   else if (state.law === "table") notes.push("its table was too long: paste it again");
   const own = catalogue.own(state);
-  for (const name of parametersOf(state, catalogue)) {
+  const limits = catalogue.moves(state) ? catalogue.folded("limits") : [];
+  for (const name of [...parametersOf(state, catalogue), ...limits]) {
     const text = get(wordOf(name, own));
     if (text === null) continue;
     const [value, about] = [number(text), catalogue.about(name)];

@@ -1,13 +1,15 @@
 // Texts in TOML for what is set on the page: the same words as in sweep and case files.
 
-import { GAINS } from "./catalogue.js";
+import { FILE, GAINS, unitsOf } from "./catalogue.js";
 import { unitOf } from "./scale.js";
 
-/** The parameters on which what is shown depends, in the order in which they are set. */
+/** The parameters on which the chart depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
+  if (state.model) return catalogue.ofSystem(state);
   // Of parameters that say the same, the page offers as many as a law needs.
   const described = catalogue.described(state).filter((name) => catalogue.about(name).page);
-  const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
+  const resting = catalogue.law(state.law)?.motions ? ["mu_s"] : [];
+  const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, ...resting];
   const folded = ["feedback", "model"].flatMap((box) => catalogue.folded(box));
   return [...sliding, ...GAINS[state.control], "tau", ...folded];
 }
@@ -28,8 +30,17 @@ function tableOf({ table, columns, speedUnit }) {
   return `table = { ${keys.map(([key, value]) => `${key} = ${quoted(value)}`).join(", ")} }\n`;
 }
 
+/** The line that names the system of a view; none of the block. */
+function systemOf(state, catalogue) {
+  if (!state.model) return "";
+  if (state.model === FILE && !catalogue.texts.has(state.system))
+    throw new RangeError("The system is not understood: its mistake is told below its text.");
+  return line("system", catalogue.system(state).value);
+}
+
 /** The tables [friction] and [units]. */
 function tablesOf(state, catalogue, names) {
+  if (state.model) return "";
   const value = (name) => catalogue.value(state, name);
   let text = "";
   if (state.law !== "none") {
@@ -61,7 +72,8 @@ function given(state, catalogue, names) {
 function fixedOf(state, catalogue, names) {
   const kept = names.filter((name) => catalogue.about(name).group !== "law");
   const lines = given(state, catalogue, kept);
-  return lines.map((name) => line(name, catalogue.value(state, name))).join("");
+  const word = (name) => catalogue.about(name).name;
+  return lines.map((name) => line(word(name), catalogue.value(state, name))).join("");
 }
 
 /** The parameters of a chart that are no axes of it, with their values. */
@@ -69,8 +81,8 @@ export function besides(state, catalogue) {
   const axes = [state.x.name, state.y.name];
   const names = parametersOf(state, catalogue).filter((name) => !axes.includes(name));
   return given(state, catalogue, names).map((name) => {
-    const { symbol, dimension } = catalogue.about(name);
-    const unit = unitOf(dimension, state.units);
+    const { symbol, dimension, unit: own } = catalogue.about(name);
+    const unit = own === "1" ? unitOf(dimension, unitsOf(state)) : own;
     return { name, symbol, unit, value: catalogue.value(state, name) };
   });
 }
@@ -83,20 +95,23 @@ const withFixed = (text) => (text ? `[fixed]\n${text}` : "");
  * @param {import("./catalogue.js").Catalogue} catalogue
  * @param {[number, number]} points along x and y
  * @param {string[]} fields
+ * @param {boolean} [curved] whether curves are wanted where there can be such
  */
-export function sweepOf(state, catalogue, points, fields) {
+export function sweepOf(state, catalogue, points, fields, curved = true) {
   const axes = [state.x, state.y];
   const names = parametersOf(state, catalogue).filter((name) =>
     axes.every((axis) => axis.name !== name),
   );
   const described = axes.map(({ name, from, to, log }, i) => {
     const spacing = log ? ', spacing = "log"' : "";
-    return `${name} = { from = ${from}, to = ${to}, points = ${points[i]}${spacing} }\n`;
+    const word = catalogue.about(name).name;
+    return `${word} = { from = ${from}, to = ${to}, points = ${points[i]}${spacing} }\n`;
   });
-  const curves = axes.some(({ name }) => name === "tau") ? "boundaries = true\n" : "";
+  const delay = axes.some(({ name }) => name === "tau");
+  const curves = delay ? `boundaries = ${curved}\n` : "";
   const list = fields.map((field) => `"${field}"`).join(", ");
   return (
-    `fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +
+    `${systemOf(state, catalogue)}fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +
     withFixed(fixedOf(state, catalogue, names)) +
     tablesOf(state, catalogue, names)
   );
@@ -106,10 +121,10 @@ export function sweepOf(state, catalogue, points, fields) {
 export function pointTexts(state, catalogue, point) {
   const given = { [state.x.name]: point[0], [state.y.name]: point[1] };
   const at = { ...state, values: { ...state.values, ...given } };
-  const names = parametersOf(state, catalogue);
+  const names = [...parametersOf(state, catalogue), ...catalogue.limits(state)];
   const tables = tablesOf(at, catalogue, names);
-  const text = withFixed(fixedOf(at, catalogue, names)) + tables;
-  if (state.law === "none") return { point: text, vc: null, motion: null };
+  const text = systemOf(state, catalogue) + withFixed(fixedOf(at, catalogue, names)) + tables;
+  if (!catalogue.moves(state)) return { point: text, vc: null, motion: null };
   const without = names.filter((name) => name !== "v0");
   return {
     point: text,
