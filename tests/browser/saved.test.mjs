@@ -717,11 +717,15 @@ test("where there is no cell, there is no value", async () => {
     });
     await page.getByRole("button", { name: bits === 2 ? "Zoom in" : "Zoom out" }).click();
     await page.locator("#legend", { hasText: words }).waitFor();
+    // The button may lie below the chart.
+    await page.evaluate(() => window.scrollTo(0, 0));
     const at = await placeOf(page, [-1.2, 5]);
     await page.mouse.move(at.x, at.y);
     await page.mouse.move(at.x + 1, at.y);
-    const hover = await page.locator("#hover").innerText();
-    assert.match(hover, new RegExp(`^α_N = −1\\.\\d+, τ = [45]\\.\\d+: ${words}$`));
+    await eventually(async () => {
+      const hover = await page.locator("#hover").innerText();
+      assert.match(hover, new RegExp(`^α_N = −1\\.\\d+, τ = [45]\\.\\d+: ${words}$`));
+    });
     await eventually(async () => {
       const cells = await page.locator("#table td").allInnerTexts();
       assert.ok(cells.length > 20 && cells.every((text) => text === words), cells[0]);
