@@ -98,7 +98,7 @@ test("every setting to begin with shows something stable, and back is back", asy
     await settled(page);
     assert.equal(await text(page, "address-told"), "", `preset ${k}`);
     assert.ok(!(await page.locator("#nothing").isVisible()), `preset ${k}`);
-    assert.match(await text(page, "readout"), /stable/, `preset ${k}`);
+    assert.match(await text(page, "readout"), /: stable/, `preset ${k}`);
   }
   await page.goBack();
   await settled(page);

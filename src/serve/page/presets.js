@@ -18,6 +18,11 @@ const PRESETS = [
     "v=1&control=load&x=alpha_n,-9000,2000&y=tau,0,0.3&law=stribeck&units=N,m,s&mass=2&stiffness=500" +
       "&normal_load=30&v0=0.1&mu0=0.33&v_s=0.062&mu_s=0.52&at=-5000,0.03",
   ],
+  ["Turning: lobes of chatter", "v=1&model=turning&x=tau,1,20&y=turning-width,0,0.6&at=7,0.03"],
+  [
+    "An upright pendulum, balanced with a delay",
+    "v=1&model=pd&x=pd-k_p,0,4&y=pd-k_d,0,4&pd-stiffness=-1&tau=0.3&at=1.6,1.2",
+  ],
 ];
 
 /** Fills the list of presets; one that is chosen becomes the address. */

@@ -10,6 +10,8 @@ const ROOM = 0.12;
 
 /** The plane of gain and delay in which the best setting is searched for. */
 const searched = (state) => {
+  // Of a system any parameter is searched.
+  if (state.model) return [[state.x, state.y].find(({ name }) => name !== "tau").name, "tau"];
   const gains = GAINS[state.control];
   const gain = [state.x, state.y].find(({ name }) => gains.includes(name))?.name ?? gains[0];
   return [gain, "tau"];
