@@ -46,6 +46,7 @@ tau = { from = 0.01, to = 10.0, points = 2500, spacing = "log" }
 mu_prime = -0.3
 `;
 const RATES = `fields = ["n_unstable", "abscissa"]
+picture = "n_unstable"
 [axes]
 alpha_n = { from = -3.0, to = 1.0, points = 120 }
 tau = { from = 0.01, to = 10.0, points = 100 }

@@ -233,7 +233,11 @@ class Explorer {
     const cells = (plane.nx * plane.ny).toLocaleString("en");
     const time = `${cells} cells in ${plane.milliseconds.toFixed(1)} ms`;
     element("speed").textContent = plane.note ?? time;
-    if (!plane.rests) return;
+    if (!plane.rests) {
+      // A map that is still read may take long.
+      if (this.state.map) this.#table();
+      return;
+    }
     this.helping.shown(plane);
     // What is asked at the point tells it more exactly, soon.
     if (this.state.map || this.#exact()) this.#say();
