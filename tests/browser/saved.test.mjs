@@ -170,7 +170,7 @@ const watchPlanes = (page) =>
         map: saved.map?.name,
         axes: axes.map(({ name, values }) => [name, Math.min(...values), Math.max(...values)]),
         ends: ends.map(({ from, to }) => [from, to]),
-        fixed: Object.fromEntries(fixed ?? []),
+        fixed: Object.fromEntries((fixed ?? []).map(({ name, value }) => [name, value])),
       });
       show(shown);
     };
@@ -519,7 +519,7 @@ v_s = 0.5
   const first = await row.innerText();
   if (/running/.test(first)) {
     await row.getByRole("button").click();
-    await page.waitForFunction(() => window.slipmap.plane.plane?.field.name === "outcome");
+    await page.waitForFunction(() => window.slipmap.plane.plane?.field.name === "vc");
     const missing = () =>
       page.evaluate(() => window.slipmap.plane.plane.bits.filter((bit) => bit & 4).length);
     const begun = await missing();
