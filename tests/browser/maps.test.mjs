@@ -448,6 +448,16 @@ test("a map that is computed tells how far it is and how long it takes", async (
     await row.filter({ hasText: /running, \d+ %, .* left/ }).waitFor({ timeout: 90000 });
     const { value, max } = await row.locator("progress").evaluate((bar) => ({ value: bar.value, max: bar.max }));
     assert.ok(value > 0 && value < max, `${value} of ${max}`);
+    // The list changes again and again; pictures are made nevertheless.
+    await eventually(async () => {
+      const made = await page.evaluate(() =>
+        [...document.querySelectorAll("#maps-table canvas")].map((canvas) => {
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          return new Set(new Uint32Array(data.buffer)).size > 1;
+        }),
+      );
+      assert.ok(made.every(Boolean), made.join());
+    });
     await picture(page, "maps_running");
   } finally {
     const ended = new Promise((done) => run.once("exit", done));
