@@ -319,12 +319,15 @@ mod tests {
     fn what_is_repeated_does_not_count_again() {
         let numbers = [vec![1.0; 20], vec![50.0; 200]].concat();
         let told = cells(Field::LatencyMargin, Column::F64(&numbers), &[0; 220]);
-        let top = |shown: Shown| shown.scale.map(|scale| scale.ends[scale.ends.len() - 1]);
+        let top = |shown: &Shown| {
+            let scale = shown.scale.as_ref();
+            scale.map(|scale| scale.ends[scale.ends.len() - 1])
+        };
         let (once, _) = told.shown(|_| false, |cell| cell > 20);
         let (often, _) = told.shown(|_| false, |_| false);
         let (few, _) = told.shown(|cell| cell > 20, |_| false);
-        assert_eq!(top(once), top(few));
-        assert!(top(often) >= top(few));
+        assert_eq!(top(&once), top(&few));
+        assert!(top(&often) >= top(&few));
     }
 
     #[test]

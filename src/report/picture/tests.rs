@@ -10,6 +10,7 @@ use crate::linear::Crossings;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::curves::StableSide;
 use crate::maps::maker::make_in_memory;
+use crate::meaning::colour;
 use crate::model::{Groups, elementary};
 use crate::setting::{Field, Parameter, SweepSpec};
 use crate::sweep::Plan;
