@@ -107,6 +107,8 @@ impl Searched {
                 (low.min(x), high.max(x))
             })
         };
+        // Friction with a state has best settings, but no robust ones.
+        let robust = of_block && spec.fixed.rate_and_state().is_none();
         Ok(Self {
             setting: spec.fixed.clone(),
             units: spec.units.clone(),
@@ -115,7 +117,7 @@ impl Searched {
                 tau: ends(tau),
             },
             of,
-            robust: of_block.then_some(Spread::Part(OFF)),
+            robust: robust.then_some(Spread::Part(OFF)),
         })
     }
 }

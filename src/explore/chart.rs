@@ -138,7 +138,10 @@ impl Limits {
 /// An upper bound on the bytes of a chart while it is computed and encoded.
 #[must_use]
 pub fn bytes(plan: &Plan) -> u64 {
-    let cells = plan.cells() * plan.bytes_per_cell() + plan.boundary_planes() * BYTES_OF_CURVES;
+    // What shows a field has its numbers in a growing list, and a byte of a cell.
+    let shown = 16 + plan.spec.fields.len() as u64;
+    let cells =
+        plan.cells() * (plan.bytes_per_cell() + shown) + plan.boundary_planes() * BYTES_OF_CURVES;
     Memory::of(plan).per_thread + 2 * cells
 }
 

@@ -11,6 +11,7 @@ use crate::setting::law_kind::LawKind;
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::units::Units;
 use crate::setting::{CaseSpec, Parameter, Setting, SweepSpec};
+use crate::slip::case::{Case, Start};
 
 /// What a sweep file, a case file or a setting says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,6 +36,8 @@ pub struct GivenSetting {
     pub axes: Vec<GivenAxis>,
     /// The fields of a sweep.
     pub fields: Vec<&'static str>,
+    /// Keys of a case that are not among these: when control begins.
+    pub left_out: Vec<&'static str>,
 }
 
 /// An axis of a sweep.
@@ -87,7 +90,11 @@ impl GivenSetting {
             Some(TextKind::Sweep) => Self::of_sweep(&SweepSpec::read(text, most_points)?),
             Some(TextKind::Case) => {
                 let case: CaseSpec = text.parse()?;
-                Self::of(&case.setting, &case.units, &case.title)
+                let given = Self::of(&case.setting, &case.units, &case.title);
+                given.map(|given| Self {
+                    left_out: switched_later(&case.case),
+                    ..given
+                })
             }
             Some(TextKind::Setting) | None => {
                 let point = PointSpec::read(text, PointOf::Sliding)?;
@@ -140,7 +147,17 @@ impl GivenSetting {
             units: units.force_length_time.clone(),
             axes: Vec::new(),
             fields: Vec::new(),
+            left_out: Vec::new(),
         })
+    }
+}
+
+/// The key that says when control begins, if that is later than t = 0.
+fn switched_later(case: &Case) -> Vec<&'static str> {
+    match case.start {
+        Start::AfterRelease => vec!["switch_on_phase"],
+        Start::State { .. } if case.switch_on > 0.0 => vec!["switch_on"],
+        Start::State { .. } => Vec::new(),
     }
 }
 
@@ -188,6 +205,7 @@ mod tests {
              length = \"m\"\ntime = \"s\"\n",
         );
         let case = case.unwrap();
+        assert_eq!(case.left_out, ["switch_on"]);
         assert_eq!(case.points, [[0.0, 0.5], [1.0, 0.25]]);
         assert_eq!((case.values["x_dot0"], case.values["v0"]), (0.3, 0.35));
         assert_eq!(case.units.unwrap()[1], "m");

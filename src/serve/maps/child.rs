@@ -99,7 +99,7 @@ impl Opened {
         }
         match contents {
             Contents::Map(look) => of_map(look, &self.path, ask, &self.one),
-            Contents::Trace(trace) => Ok((of_trace(trace, ask)?, Vec::new())),
+            Contents::Trace(trace) => Ok((of_trace(trace, ask, &self.one)?, Vec::new())),
         }
     }
 }
@@ -126,13 +126,16 @@ fn of_map(
     Ok((answer, Vec::new()))
 }
 
-/// An answer about a trace.
-fn of_trace(trace: &traces::Opened, ask: &Ask) -> Result<Frame, Refused> {
+/// An answer about a trace. `one` is locked while its samples are read, which may be many.
+fn of_trace(trace: &traces::Opened, ask: &Ask, one: &Mutex<()>) -> Result<Frame, Refused> {
     Ok(match ask {
         Ask::Summary => json(&trace.summary())?,
         Ask::Description => json(&trace.description())?,
         Ask::Sweep => frame(Kind::Text, trace.case().into_bytes()),
-        Ask::Motion => frame(Kind::Bytes, trace.motion()?),
+        Ask::Motion => {
+            let _one = one.lock().unwrap_or_else(PoisonError::into_inner);
+            frame(Kind::Bytes, trace.motion()?)
+        }
         Ask::Cell(_) | Ask::Curves(_) | Ask::Window(_) => {
             return Err(Refused::asked(
                 "it is a trace: it has a motion, and no cells",

@@ -24,8 +24,8 @@ const ROOM: u32 = 32;
 const MOST_SENT: usize = 32;
 /// Bytes for the curves of a plane, unless there are very many.
 const BYTES_OF_CURVES: u64 = 8 << 20;
-/// The most bytes of a pixel: a real, its status, and its bits.
-const BYTES_OF_PIXEL: usize = 10;
+/// The most bytes of a pixel: a real, its status, its bits, and why it shows no value.
+const BYTES_OF_PIXEL: usize = 11;
 /// How often a map is opened again after another one has taken its place.
 const MOST_OPENED: usize = 3;
 

@@ -28,13 +28,9 @@ const offered = (units) => {
  * @param {object} given the answer about the file
  */
 export function take(state, catalogue, given) {
-  const notes = [];
   const { values, law, axes } = given;
-  state.law = law ?? "none";
-  if (law && !catalogue.law(law)) {
-    notes.push(`motions under the law ${law} are not followed on the page`);
-    state.law = "none";
-  }
+  const notes = given.left_out.map((key) => `${key} is not followed on the page`);
+  [state.model, state.law] = ["", law ?? "none"];
   if (given.formula !== null) state.formula = given.formula;
   state.table = given.points.map((row) => row.join(", ")).join("\n");
   [state.columns, state.speedUnit, state.highest] = ["", "", 0];
@@ -59,12 +55,14 @@ export function take(state, catalogue, given) {
   }
   const [x, y] = shown.slice(-2);
   if (x && y) [state.x, state.y] = [x, y];
-  else if (x) [state.x, state.y] = [x, catalogue.axis("tau", state, x)];
+  else if (x?.name === "tau") {
+    [state.x, state.y] = [catalogue.axis(GAINS[state.control][0], state, x), x];
+  } else if (x) [state.x, state.y] = [x, catalogue.axis("tau", state, x)];
+  catalogue.mendAxes(state, known, 0);
   const point = [state.x, state.y].map(({ name }) => values[name]);
   state.point = point.every(Number.isFinite) ? point : null;
   const { x_dot0: u, a0: a = 0 } = values;
   state.start = Number.isFinite(u) ? [u, a] : null;
-  catalogue.mendAxes(state, known, 0);
   return notes;
 }
 
@@ -123,6 +121,6 @@ export class Dropped {
     const text = new TextDecoder("utf-8", { fatal: !curve }).decode(await file.arrayBuffer());
     if (text.includes("\0")) throw new RangeError("it is no text");
     if (curve) this.curve(text);
-    else this.setting(await this.source.setting(text), file.name);
+    else await this.setting(await this.source.setting(text), file.name);
   }
 }

@@ -92,7 +92,7 @@ class Explorer {
       failed,
     });
     this.following = new Following(this.panel, (point) => this.#glance(point));
-    this.steps = new Steps();
+    this.steps = new Steps(() => this.settling && this.steps.put(this.#address()));
     this.dropped = new Dropped(source, {
       curve: (text) => this.#dropCurve(text),
       setting: (given, name) => this.#dropSetting(given, name),
@@ -203,6 +203,8 @@ class Explorer {
     if (this.state.map) return;
     this.helping.clear();
     element("readout").classList.add("asking");
+    // It is of the former values.
+    element("hover").hidden = true;
     this.#ownView();
     if (!this.state.point) this.plane.point = this.#usualPoint();
     this.live.changed(this.state);
@@ -233,6 +235,7 @@ class Explorer {
     const cells = (plane.nx * plane.ny).toLocaleString("en");
     const time = `${cells} cells in ${plane.milliseconds.toFixed(1)} ms`;
     element("speed").textContent = plane.note ?? time;
+    if (this.pointed) this.#tellPointed();
     if (!plane.rests) {
       // A map that is still read may take long.
       if (this.state.map) this.#table();
@@ -377,12 +380,20 @@ class Explorer {
     this.#say();
   }
 
+  /** What the chart shows where the pointer rests; returned too. */
+  #tellPointed() {
+    const card = element("hover");
+    const words = this.#words(this.pointed);
+    card.textContent = words;
+    card.hidden = !words;
+    return words;
+  }
+
   /** The card beside the pointer, and the answers at the side. */
   #hover(point, place) {
     const card = element("hover");
-    const words = this.#words(point);
-    card.textContent = words;
-    card.hidden = !words;
+    this.pointed = point;
+    const words = this.#tellPointed();
     if (place) {
       const { x, w } = this.plane.area();
       card.classList.toggle("left", place.x > x + w / 2);
@@ -394,6 +405,8 @@ class Explorer {
 
   #view(view) {
     const { state } = this;
+    this.pointed = null;
+    element("hover").hidden = true;
     if (state.map) return this.saved.view(view);
     ["x", "y"].forEach((key, i) => {
       if (view) this.#setEnds(state[key], view[i]);
@@ -410,7 +423,7 @@ class Explorer {
   /** Takes a measured friction curve. */
   #dropCurve(text) {
     this.#live();
-    Object.assign(this.state, { table: text, columns: "", speedUnit: "" });
+    Object.assign(this.state, { model: "", table: text, columns: "", speedUnit: "" });
     // Forces are divided by the load, which is set there.
     element("model-part").open = true;
     this.controls.takeLaw("table");

@@ -22,7 +22,7 @@ export class Helping {
   constructor(source, state, catalogue, plane, done) {
     Object.assign(this, { source, state, catalogue, plane, ...done });
     this.waiting = new Waiting(element("helping-waiting"), "The search", {
-      stop: () => this.stop(),
+      stop: () => this.asking?.abort(),
       again: () => this.asked?.(),
     });
     const click = (id, act) => element(id).addEventListener("click", act);
@@ -47,8 +47,7 @@ export class Helping {
   }
 
   /** The chart that is shown now, at rest. */
-  shown({ others }) {
-    const counts = others?.n_unstable;
+  shown({ counts }) {
     const none = Boolean(counts) && !this.state.map && !counts.includes(0);
     element("nothing").hidden = !none;
     element("best").hidden = Boolean(this.state.map) || !isSearched(this.state);
@@ -80,7 +79,7 @@ export class Helping {
     const { state, catalogue, source } = this;
     const found = await this.#ask(
       () => this.fit(),
-      (signal) => stableRegion(state, catalogue, source, signal),
+      (signal) => stableRegion(state, catalogue, source, this.plane.point, signal),
     );
     if (found === null) this.failed(new RangeError("nothing is stable, as far as one looks"));
     if (found) this.shows(found.ends, found.centre);
@@ -113,19 +112,19 @@ export class Helping {
   }
 
   #tellBest({ best, robust }, placed) {
-    const time = (abscissa) =>
-      abscissa < 0
-        ? `settles in ${withUnit(told(-1 / abscissa, 4), this.unit([0, 0, 1]))}`
+    const time = (relaxation) =>
+      relaxation > 0
+        ? `settles in ${withUnit(told(relaxation, 4), this.unit([0, 0, 1]))}`
         : "is not stable";
     const offer = (words, point, then) => {
       const button = make("button", { type: "button" }, words);
       button.addEventListener("click", () => this.takes(point));
       return make("p", {}, button, " ", then);
     };
-    const rows = [offer("Take the best", placed(best), time(best.abscissa))];
+    const rows = [offer("Take the best", placed(best), time(best.relaxation_time))];
     if (robust) {
       const off = told(100 * robust.spread, 3);
-      const worst = `${time(robust.worst_abscissa)} where all is off by up to ${off} %`;
+      const worst = `${time(robust.worst_relaxation_time)} where all is off by up to ${off} %`;
       rows.push(offer("Take the robust one", placed(robust), worst));
     }
     element("best-told").replaceChildren(...rows);
@@ -134,7 +133,8 @@ export class Helping {
   /** Keeps the answers that are shown, to stand beside the next ones. */
   #compare() {
     this.kept = this.kept ? null : { where: this.where(), rows: this.#rows() };
-    this.plane.other = this.kept && this.at();
+    const at = this.kept && this.at();
+    this.plane.other = at && { at, of: [this.state.x.name, this.state.y.name] };
     element("compare").setAttribute("aria-pressed", String(Boolean(this.kept)));
     this.plane.draw();
     this.tell();
@@ -144,6 +144,8 @@ export class Helping {
   #rows() {
     const rows = new Map();
     for (const id of COMPARED) {
+      // What is hidden is of another point.
+      if (element(id).closest("[hidden]")) continue;
       for (const row of element(id).children) {
         const [term, text] = [...row.children].map((part) => part.textContent);
         rows.set(term, text);

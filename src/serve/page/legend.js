@@ -88,8 +88,9 @@ export function drawLegend(pen, { shown, marks }, [x, y]) {
     const height = BAR / scale.bar.length;
     scale.bar.forEach((colour, i) => {
       const at = top + LINE / 2 + BAR - (i + 1) * height;
-      // Each one reaches under the next one, so that no gap shows.
-      pen.box({ x, y: at, w: STRIP, h: Math.min(2 * height, height * (i + 1)) }, { fill: colour });
+      // Each one reaches under the next one, which is drawn later, so that no gap shows.
+      const more = i + 1 < scale.bar.length ? height : 0;
+      pen.box({ x, y: at - more, w: STRIP, h: height + more }, { fill: colour });
     });
     pen.box({ x, y: top + LINE / 2, w: STRIP, h: BAR }, { stroke: rule });
     for (const { part, text } of scale.ticks) {

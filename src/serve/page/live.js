@@ -4,6 +4,7 @@ import { flagsOf } from "./cells.js";
 import { coloursOf } from "./colours.js";
 import { element } from "./dom.js";
 import { Newest } from "./newest.js";
+import { countsOf } from "./region.js";
 import { Scale } from "./scale.js";
 import { besides, sweepOf } from "./sweep.js";
 import { Waiting } from "./waiting.js";
@@ -64,7 +65,8 @@ export class Live {
     this.requests = new Newest(ask, show, failed, { most: 2, patience: PATIENCE });
     this.waiting = new Waiting(element("chart-waiting"), "The chart", {
       stop: () => {
-        this.stop();
+        clearTimeout(this.resting);
+        this.requests.stop();
         this.stale.fail();
       },
       again: () => this.changed(this.state),
@@ -133,6 +135,7 @@ export class Live {
       cells: field.values,
       status: byName.status,
       others: byName,
+      counts: rests ? countsOf(chart) : null,
       shown,
       gaps,
       fixed,

@@ -109,6 +109,7 @@ export class ModelChoice {
   async #read(text) {
     const { state } = this;
     this.reading?.abort();
+    this.asked = text;
     this.reading = new AbortController();
     const { signal } = this.reading;
     let mistake = null;
@@ -153,6 +154,8 @@ export class ModelChoice {
     for (const option of element("show").options) {
       option.hidden = option.disabled = !shown.includes(option.value);
     }
+    // A text that is still read is not what is set any more.
+    if (state.system !== this.asked) this.reading?.abort();
     if (model !== FILE) return;
     const text = element("system-text");
     if (text.value !== state.system) text.value = state.system;

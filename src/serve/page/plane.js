@@ -39,7 +39,8 @@ export class PlaneView {
     /** The scales of what is in view, x and y. */
     this.view = null;
     this.point = null;
-    /** The best setting with the box of the robust one, and another point that is compared. */
+    /** The best setting with the box of the robust one, and another point that is compared, with
+     * the names of its axes. */
     [this.best, this.other] = [null, null];
     new ResizeObserver(() => this.draw()).observe(canvas);
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
@@ -100,7 +101,9 @@ export class PlaneView {
       pen.image(this.image, this.#imageBox(area));
       this.#drawCurves(pen, area);
       if (point && this.best) this.#drawBest(pen, area);
-      if (point && this.other) this.#drawPoint(pen, area, this.other, "calm");
+      // Only where its axes are those that are seen.
+      const there = this.other?.of.every((name, i) => name === axes[i]?.name);
+      if (point && there) this.#drawPoint(pen, area, this.other.at, "calm");
       if (point) this.#drawPoint(pen, area, point, "mark");
     });
     drawFrame(pen, area, this.view, axes);

@@ -41,8 +41,14 @@ export function bestIn(state, catalogue, source, signal) {
 async function widest(state, catalogue, source, signal) {
   const names = searched(state);
   const first = Object.fromEntries(names.map((name) => [name, catalogue.about(name).page.axis]));
-  const { usual } = await source.best(searchText(state, catalogue, first), signal);
-  const ends = { [names[0]]: usual.gain, tau: usual.tau };
+  // Where nothing is searched, the ends of the sliders do.
+  const none = (error) => {
+    if (signal.aborted || !error.status) throw error;
+    return {};
+  };
+  const asked = source.best(searchText(state, catalogue, first), signal);
+  const { usual } = await asked.catch(none);
+  const ends = usual ? { [names[0]]: usual.gain, tau: usual.tau } : {};
   return [state.x, state.y].map(({ name, log }) => {
     const [from, to] = ends[name] ?? catalogue.about(name).page.slider;
     return { name, from, to, log: log && from * to > 0 };
@@ -92,13 +98,18 @@ function cellAt({ axes, ny }, point) {
   return index.includes(-1) ? null : index[0] * ny + index[1];
 }
 
+/** The counts of a chart; NaN where a cell shows none, such as a marginal one. */
+export function countsOf(chart) {
+  const { values, gaps } = chart.fields.find(({ name }) => name === "n_unstable");
+  return Array.from(values, (count, n) => (gaps?.[n] ? NaN : count));
+}
+
 /** A chart of counts over two axes. */
 async function countsOver(state, catalogue, source, [x, y], signal) {
   const text = sweepOf({ ...state, x, y }, catalogue, CELLS, ["n_unstable"]);
   const chart = await source.chart(text, signal);
   const [nx, ny] = chart.axes.map(({ values }) => values.length);
-  const { values } = chart.fields.find(({ name }) => name === "n_unstable");
-  return { axes: chart.axes, nx, ny, counts: values };
+  return { axes: chart.axes, nx, ny, counts: countsOf(chart) };
 }
 
 /** The ends of cells along both axes, with some room, and their middle cell. */
@@ -123,16 +134,16 @@ function boxOf({ axes, ny }, cells, room) {
 
 /**
  * The ends of both axes that show the stable region of a view, and a point in it: the region of the
- * marked point, or else the largest one. None where nothing is stable.
+ * marked point, `near`, or else the largest one. None where nothing is stable.
  * @returns {Promise<{ends: [number, number][], centre: number[]} | null>}
  */
-export async function stableRegion(state, catalogue, source, signal) {
+export async function stableRegion(state, catalogue, source, near, signal) {
   let axes = await widest(state, catalogue, source, signal);
   let found = null;
   // The second time its ends are seen more exactly.
   for (const room of [1, ROOM]) {
     const chart = await countsOver(state, catalogue, source, axes, signal);
-    const cells = regionOf(chart, cellAt(chart, found?.centre ?? state.point));
+    const cells = regionOf(chart, cellAt(chart, found?.centre ?? near));
     if (!cells) return found;
     found = boxOf(chart, cells, room);
     axes = axes.map((axis, i) => {

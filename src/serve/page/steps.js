@@ -6,7 +6,9 @@ import { element } from "./dom.js";
 const CLOSE = 1000;
 
 export class Steps {
-  constructor() {
+  /** @param {() => void} settle puts what has not come to rest yet */
+  constructor(settle) {
+    this.settle = settle;
     // A page that is opened anew does not know what lies ahead.
     this.step = this.last = history.state?.step ?? 0;
     [this.put_, this.given] = [-Infinity, true];
@@ -18,6 +20,7 @@ export class Steps {
   }
 
   back() {
+    this.settle();
     if (this.step > 0) history.back();
   }
 

@@ -86,10 +86,11 @@ export class Thumbnails {
   }
 
   /** Tries again if it is in sight then. */
-  #later({ canvas }) {
-    setTimeout(() => {
-      this.sight.unobserve(canvas);
-      if (canvas.isConnected) this.sight.observe(canvas);
+  #later(known) {
+    known.timer ??= setTimeout(() => {
+      known.timer = null;
+      this.sight.unobserve(known.canvas);
+      if (known.canvas.isConnected) this.sight.observe(known.canvas);
     }, AGAIN);
   }
 
