@@ -462,7 +462,7 @@ test("a law is written as a formula, whose own parameters are sliders and axes",
       }),
     );
   });
-  const outside = ({ flags: of }) => of.includes("outside the model's range");
+  const outside = ({ flags: of }) => of.includes("outside the model");
   for (const { sigma, tau, count, flags: of } of cells) {
     if (sigma < -1.8) {
       assert.ok(outside({ flags: of }) && count === 65535, `${sigma} ${tau}`);
