@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 use super::problem::{Problem, Why};
 use crate::linear::curves::CurvePiece;
 use crate::setting::SweepSpec;
+use crate::setting::field::Storage;
 use crate::setting::source::Cost;
 use crate::sweep::Plan;
 use crate::sweep::engine::RunError;
@@ -138,11 +139,13 @@ impl Limits {
 /// An upper bound on the bytes of a chart while it is computed and encoded.
 #[must_use]
 pub fn bytes(plan: &Plan) -> u64 {
-    // What shows a field has its numbers in a growing list, and a byte of a cell.
-    let shown = 16 + plan.spec.fields.len() as u64;
-    let cells =
-        plan.cells() * (plan.bytes_per_cell() + shown) + plan.boundary_planes() * BYTES_OF_CURVES;
-    Memory::of(plan).per_thread + 2 * cells
+    let cells = plan.cells() * plan.bytes_per_cell() + plan.boundary_planes() * BYTES_OF_CURVES;
+    // What a field shows: a byte for each of its cells and, of one field at a time, real numbers in
+    // a list that grows.
+    let fields = &plan.spec.fields;
+    let real = fields.iter().any(|field| field.storage() == Storage::Real);
+    let shown = plan.cells() * (fields.len() as u64 + if real { 16 } else { 0 });
+    Memory::of(plan).per_thread + 2 * cells + shown
 }
 
 /// Whether a chart may take many seconds: its cells follow motions or are searched through, roots

@@ -179,7 +179,7 @@ mod tests {
         let sweep = read(
             "title = \"t\"\nfields = [\"n_unstable\", \"vc\"]\n[axes]\nmu_prime_rest = [-0.5]\n\
              alpha_n = { from = 0.1, to = 10.0, points = 5, spacing = \"log\" }\n\
-             tau = { from = 0.0, to = 12.0, points = 5 }\n[fixed]\nv0 = 0.2\n\
+             tau = { from = 0.5, to = 12.0, points = 5 }\n[fixed]\nv0 = 0.2\n\
              [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",
         );
         let sweep = sweep.unwrap();
@@ -191,7 +191,7 @@ mod tests {
             .collect();
         assert_eq!(
             told,
-            [("alpha_n", 0.1, 10.0, true), ("tau", 0.0, 12.0, false)]
+            [("alpha_n", 0.1, 10.0, true), ("tau", 0.5, 12.0, false)]
         );
         assert_eq!(
             (sweep.values["mu_prime_rest"], sweep.values["v0"]),
@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(sweep.fields, ["n_unstable", "vc"]);
         let case = read(
             "switch_on = 70.0\n[fixed]\nv0 = 0.35\ntau = 4.15\n[friction]\nlaw = \"table\"\n\
-             v = [0.0, 1.0]\nmu_k = [0.5, 0.25]\n[start]\nx_dot0 = 0.3\n[units]\nforce = \"N\"\n\
+             speeds = [0.0, 1.0]\nmu_k = [0.5, 0.25]\n[start]\nx_dot0 = 0.3\n[units]\nforce = \"N\"\n\
              length = \"m\"\ntime = \"s\"\n",
         );
         let case = case.unwrap();

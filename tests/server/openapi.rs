@@ -154,6 +154,7 @@ fn keys_are_always_there() {
     let described = Described::of(&Serving::new(&folder));
     let optional = [
         ("Array", "runs"),
+        ("FieldHead", "gaps"),
         ("FieldHead", "kinds"),
         ("JobChange", "first"),
         ("JobChange", "state"),
