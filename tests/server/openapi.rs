@@ -156,6 +156,7 @@ fn keys_are_always_there() {
         ("Array", "runs"),
         ("FieldHead", "gaps"),
         ("FieldHead", "kinds"),
+        ("FieldHead", "shown"),
         ("JobChange", "first"),
         ("JobChange", "state"),
         ("Problem", "detail"),
