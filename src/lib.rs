@@ -91,6 +91,7 @@ pub mod linear;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod maps;
 #[cfg(any(feature = "explore", feature = "store"))]
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub(crate) mod meaning;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;

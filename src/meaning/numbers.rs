@@ -1,5 +1,7 @@
 //! Numbers and units as read in pictures and on the page.
 
+use crate::model::elementary::power;
+
 /// The unit in brackets; empty for dimensionless quantities.
 pub(crate) fn suffix(unit: &str, open: &str, close: &str) -> String {
     if unit == "1" || unit.is_empty() {
@@ -52,7 +54,7 @@ pub(crate) fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) ->
         None => with_minus(&format!("{value:.decimals$}")),
         Some(_) if value == 0.0 => "0".into(),
         Some(exponent) => with_power(
-            &format!("{:.decimals$}", value / 10f64.powi(exponent)),
+            &format!("{:.decimals$}", value / power(10.0, exponent)),
             exponent,
         ),
     }

@@ -6,6 +6,7 @@ use super::legend::{Entry, Mark};
 use super::numbers::{decimal_exponent, number};
 use super::scale::Scale;
 use super::steps::{Steps, above, below};
+use crate::model::elementary::power;
 use crate::setting::Field;
 use crate::setting::field::{Spread, Storage};
 
@@ -247,7 +248,7 @@ fn rounded_up(value: f64) -> f64 {
     if value == 0.0 {
         return 1.0;
     }
-    let unit = 10f64.powi(decimal_exponent(value) - 1);
+    let unit = power(10.0, decimal_exponent(value) - 1);
     (value / unit - 1e-9).ceil() * unit
 }
 

@@ -1,6 +1,7 @@
 //! From the values of an axis to places along it.
 
 use super::ticks::{self, Tick};
+use crate::model::elementary::{ln, log10, pow, power};
 use crate::setting::system::SpeedUnit;
 
 /// Relative agreement of the ratios of neighbouring values on a logarithmic axis.
@@ -92,7 +93,7 @@ impl Scale {
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
             (f64::min(low, v), f64::max(high, v))
         });
-        let lowest = 10f64.powi((high.log10().floor() as i32).saturating_sub(decades));
+        let lowest = power(10.0, (log10(high).floor() as i32).saturating_sub(decades));
         (high > 0.0).then(|| Self::logarithmic(f64::max(low / 1.3, lowest), high * 1.3))
     }
 
@@ -112,7 +113,7 @@ impl Scale {
     /// The position of a value: 0 at the lower end, 1 at the upper one.
     pub(crate) fn part(&self, value: f64) -> f64 {
         match self.spread {
-            Spread::Logarithmic => (value / self.from).ln() / (self.to / self.from).ln(),
+            Spread::Logarithmic => ln(value / self.from) / ln(self.to / self.from),
             Spread::Linear => (value - self.from) / (self.to - self.from),
             Spread::Speed(unit) => {
                 let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
@@ -126,7 +127,7 @@ impl Scale {
     /// The value at a position.
     pub(crate) fn value(&self, part: f64) -> f64 {
         match self.spread {
-            Spread::Logarithmic => self.from * (self.to / self.from).powf(part),
+            Spread::Logarithmic => self.from * pow(self.to / self.from, part),
             Spread::Linear => self.from + (self.to - self.from) * part,
             Spread::Speed(unit) => {
                 let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
@@ -223,7 +224,10 @@ fn log_spaced(values: &[f64]) -> bool {
     if values.len() < 3 || low * high <= 0.0 || span < SMALLEST_SPAN {
         return false;
     }
-    let ratio = (values[values.len() - 1] / values[0]).powf(1.0 / (values.len() - 1) as f64);
+    let ratio = pow(
+        values[values.len() - 1] / values[0],
+        1.0 / (values.len() - 1) as f64,
+    );
     values
         .windows(2)
         .all(|w| (w[1] / w[0] / ratio - 1.0).abs() < SAME_RATIO)

@@ -5,6 +5,7 @@ use super::colour::{
 };
 use super::gradient::ColourMap;
 use super::scale::Scale;
+use crate::model::elementary::power;
 
 /// Relative rounding of the ends of a scale.
 const ROUNDED: f64 = 1e-9;
@@ -51,7 +52,7 @@ impl Steps {
         let range = low.abs().max(high.abs());
         let count = STEPS as i32;
         // At ± n² parts of the range, since the strength grows with the square root.
-        let end = |n: i32| f64::from(n.signum()) * (f64::from(n) / STEPS).powi(2) * range;
+        let end = |n: i32| f64::from(n.signum()) * power(f64::from(n) / STEPS, 2) * range;
         let ends: Vec<f64> = (1 - count..count).map(end).collect();
         let middle = |n: i32| 0.5 * (end(n) + end(n + 1));
         let shade = |n: i32| colour::two_sided(map, stable * middle(n), range);

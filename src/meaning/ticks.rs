@@ -1,6 +1,7 @@
 //! Round values along an axis.
 
 use super::numbers::{decimal_exponent, tick_number};
+use crate::model::elementary::{log10, power};
 
 /// A mark on an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +42,7 @@ pub(crate) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec
     }
     let exponent = decimal_exponent(largest);
     let power = (!PLAIN.contains(&exponent)).then_some(exponent);
-    let decimals = power.unwrap_or(0) - step.log10().floor() as i32;
+    let decimals = power.unwrap_or(0) - log10(step).floor() as i32;
     (0..=(last - first) as u64)
         .map(|i| {
             let value = (first + i as f64) * step;
@@ -56,7 +57,7 @@ pub(crate) fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `rough`.
 fn round_step(rough: f64) -> f64 {
-    let power = 10f64.powi(rough.log10().floor() as i32);
+    let power = power(10.0, log10(rough).floor() as i32);
     let factors = [1.0, 2.0, 5.0, 10.0];
     let factor = factors.into_iter().find(|f| f * power >= rough * 0.999_999);
     factor.unwrap_or(10.0) * power
@@ -65,8 +66,8 @@ fn round_step(rough: f64) -> f64 {
 /// Ticks at 1 to 9 times powers of ten; labels at the powers, and at 2 and 5 times them over a
 /// short range, if `most` leaves room for them.
 pub(crate) fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
-    let (low, high) = (from.log10().floor() as i32, to.log10().ceil() as i32);
-    let decades = (to / from).log10();
+    let (low, high) = (log10(from).floor() as i32, log10(to).ceil() as i32);
+    let decades = log10(to / from);
     let every = (decades / most.max(1) as f64).ceil().max(1.0) as i32;
     let labelled = |digit: i32, exponent: i32| match digit {
         1 => exponent.rem_euclid(every) == 0,
@@ -77,7 +78,7 @@ pub(crate) fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
     let mut ticks = Vec::new();
     for exponent in low..=high {
         for digit in 1..=9 {
-            let value = f64::from(digit) * 10f64.powi(exponent);
+            let value = f64::from(digit) * power(10.0, exponent);
             if value < from * (1.0 - 1e-9) || value > to * (1.0 + 1e-9) {
                 continue;
             }

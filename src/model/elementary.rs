@@ -11,8 +11,8 @@
 use num_complex::Complex64;
 
 pub(crate) use libm::{
-    acos, atan, atan2, cbrt, cos, cosh, exp, expm1, hypot, log as ln, log1p as ln_1p, pow, sin,
-    sincos, sinh, tanh,
+    acos, atan, atan2, cbrt, cos, cosh, exp, expm1, hypot, log as ln, log1p as ln_1p, log10, pow,
+    sin, sincos, sinh, tanh,
 };
 
 /// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power
