@@ -150,7 +150,8 @@ impl CellArgs {
             warn_beyond_curve(units.and_then(|units| setting.curve_remark(units)));
             (texts.point, &[Needed::V0, Needed::Delay][..])
         };
-        let text = text.ok_or_else(|| without(&setting, needed))?;
+        let of_block = text.filter(|_| setting.system().is_none());
+        let text = of_block.ok_or_else(|| without(&setting, needed))?;
         let read = PointSpec::read(&text, of);
         read.map(Some)
             .map_err(|error| Failure::in_file(error, "the cell", &text))

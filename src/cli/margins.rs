@@ -50,11 +50,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let setting = &asked.setting;
     let decay = args.decay(&asked.units)?;
     let Some(margins) = Margins::at(setting, decay, &Stop::default())? else {
-        let law = setting.law().map_or("", |law| law.name());
+        let of = setting.law().map_or("a system from a file".into(), |law| {
+            format!("the {} law", law.name())
+        });
         return Err(Failure::bad_input_with_help(
-            format!(
-                "margins of the {law} law are not known: a law of the velocity alone is needed"
-            ),
+            format!("margins of {of} are not known: a law of the velocity alone is needed"),
             "slipmap point gives its delay margin and, with --json, its latency margin",
         ));
     };
