@@ -15,11 +15,13 @@ use serde::Serialize;
 const ALIGNED: usize = 8;
 
 /// Numbers that arrays hold.
-pub trait Element: Copy + PartialEq {
+pub trait Element: Copy {
     /// Its name in heads.
     const KIND: &str;
     /// Adds its bytes.
     fn put(self, bytes: &mut Vec<u8>);
+    /// Whether another one has the same bytes.
+    fn is(self, other: Self) -> bool;
 }
 
 macro_rules! element {
@@ -28,6 +30,9 @@ macro_rules! element {
             const KIND: &str = stringify!($kind);
             fn put(self, bytes: &mut Vec<u8>) {
                 bytes.extend(self.to_le_bytes());
+            }
+            fn is(self, other: Self) -> bool {
+                self.to_le_bytes() == other.to_le_bytes()
             }
         }
     )*};
@@ -77,7 +82,7 @@ impl Arrays {
         let mut runs: Vec<(T, u32)> = Vec::new();
         // A run takes one number and four bytes.
         let most = size_of_val(numbers) / (size_of::<T>() + 4);
-        for run in numbers.chunk_by(|a, b| a == b) {
+        for run in numbers.chunk_by(|a, b| a.is(*b)) {
             if runs.len() >= most {
                 return self.push(numbers.iter().copied());
             }
@@ -136,6 +141,8 @@ mod tests {
         assert_eq!((plain.offset, plain.length, plain.runs), (0, 3, None));
         assert_eq!((runs.offset, runs.length, runs.runs), (8, 15, Some(3)));
         assert_eq!((short.offset, short.length, short.runs), (32, 2, None));
+        // No number is the same as any, but has the same bytes.
+        assert_eq!(Arrays::default().push_runs(&[f64::NAN; 4]).runs, Some(1));
         assert_eq!(arrays.0[8..14], [7, 0, 9, 0, 7, 0]);
         assert_eq!(arrays.0[16..28], [5, 0, 0, 0, 10, 0, 0, 0, 15, 0, 0, 0]);
         let bytes = arrays.behind(&plain).unwrap();

@@ -11,7 +11,7 @@ use super::pixels::Pixels;
 use super::reading::amiss;
 use super::shelf::Plane;
 use super::source::Facts;
-use super::window::{Asked, Numbers, Shot, Shown};
+use super::window::{Asked, Columns, Numbers, Shot, Shown};
 use crate::sweep::engine::STATUS_FILL;
 
 /// The pixels of a field, in one of three types.
@@ -167,13 +167,8 @@ impl View {
     }
 
     /// The bits of the pixels, from those of the field and of the status.
-    fn marks(
-        &self,
-        of_field: &[u8],
-        status: &Canvas<u8>,
-        places: impl Iterator<Item = usize>,
-    ) -> Vec<u8> {
-        let marks = |place: usize| {
+    fn marks(&self, of_field: &[u8], status: &Canvas<u8>, places: &[usize]) -> Vec<u8> {
+        let marks = |&place: &usize| {
             let (of_field, of_status) = (of_field[place], status.bits[place]);
             let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
             let unread = (of_field | of_status) & UNREAD;
@@ -183,16 +178,16 @@ impl View {
         let (height, width) = (self.slow.len(), self.fast.len());
         let hiding = locked(&self.amiss);
         if hiding.is_none() && *rows == (0..height) && *columns == (0..width) {
-            return places.map(marks).collect();
+            return places.iter().map(marks).collect();
         }
         let hides = |place: usize| match &*hiding {
             Some(hiding) => hiding.bits[place] & SEVERAL != 0 && amiss(status.values[place]) == 0,
             None => false,
         };
-        let all = places.map(|place| {
+        let all = places.iter().map(|&place| {
             match rows.contains(&(place / width)) && columns.contains(&(place % width)) {
-                true if hides(place) => marks(place) | SEVERAL,
-                true => marks(place),
+                true if hides(place) => marks(&place) | SEVERAL,
+                true => marks(&place),
                 false => BEYOND,
             }
         });
@@ -218,24 +213,26 @@ impl View {
             true => (&self.slow, &self.fast),
             false => (&self.fast, &self.slow),
         };
-        let places = || {
-            let fast = self.fast.len();
-            (0..across.len()).flat_map(move |ix| {
-                (0..up.len()).map(move |iy| match (across.place(ix), up.place(iy)) {
+        let fast = self.fast.len();
+        let columns = columns(across, up);
+        let mut places = Vec::new();
+        for ix in columns.firsts() {
+            places.extend(
+                (0..up.len()).map(|iy| match (across.place(ix), up.place(iy)) {
                     (ix, iy) if x_is_slow => ix * fast + iy,
                     (ix, iy) => iy * fast + ix,
-                })
-            })
-        };
+                }),
+            );
+        }
         let field = locked(&self.field);
         let status = locked(&self.status);
         let fill = facts.fill(self.column);
         let hidden = |place: usize| field.bits()[place] & UNREAD != 0;
         let values = match &*field {
-            AnyCanvas::U8(canvas) => Numbers::U8(picked(canvas, places(), hidden, fill as u8)),
-            AnyCanvas::U16(canvas) => Numbers::U16(picked(canvas, places(), hidden, fill as u16)),
+            AnyCanvas::U8(canvas) => Numbers::U8(picked(canvas, &places, hidden, fill as u8)),
+            AnyCanvas::U16(canvas) => Numbers::U16(picked(canvas, &places, hidden, fill as u16)),
             AnyCanvas::U64(canvas) => {
-                let bits = picked(canvas, places(), hidden, fill);
+                let bits = picked(canvas, &places, hidden, fill);
                 Numbers::F64(bits.into_iter().map(f64::from_bits).collect())
             }
         };
@@ -246,24 +243,44 @@ impl View {
             version: self.version,
             x: shown(self.asked.x, across),
             y: self.asked.y.map(|y| shown(y, up)),
+            columns,
             values,
-            status: picked(&status, places(), unread, STATUS_FILL),
-            bits: self.marks(field.bits(), &status, places()),
+            status: picked(&status, &places, unread, STATUS_FILL),
+            bits: self.marks(field.bits(), &status, &places),
             damage: locked(&self.damage).clone(),
         }
+    }
+}
+
+/// The columns of pixels. Neighbours are alike where no pixel hides a cell and both show the same.
+fn columns(across: &Pixels, up: &Pixels) -> Columns {
+    let all = 0..across.len() as u32;
+    let hides = across.is_crowded() || up.is_crowded();
+    let shown = |column: u32| {
+        let place = across.place(column as usize);
+        (across.nearest[place], across.on_axis.contains(&place))
+    };
+    let mut last = 0;
+    let which = all.map(|column| {
+        last += u32::from(column > 0 && (hides || shown(column) != shown(column - 1)));
+        last
+    });
+    Columns {
+        which: which.collect(),
+        height: up.len(),
     }
 }
 
 /// The values at the given places, `fill` where the pixel shows no cell.
 fn picked<T: Cell>(
     canvas: &Canvas<T>,
-    places: impl Iterator<Item = usize>,
+    places: &[usize],
     hidden: impl Fn(usize) -> bool,
     fill: T,
 ) -> Vec<T> {
-    let value = |place: usize| match hidden(place) {
+    let value = |&place: &usize| match hidden(place) {
         true => fill,
         false => canvas.values[place],
     };
-    places.map(value).collect()
+    places.iter().map(value).collect()
 }

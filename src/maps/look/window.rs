@@ -29,6 +29,34 @@ pub(crate) struct Shown {
     pub values: Vec<f64>,
 }
 
+/// Columns of pixels: neighbours are alike where cells are wider than pixels.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Columns {
+    /// For every column of pixels, which of the columns that differ it is: 0, 1, 2, …
+    pub which: Vec<u32>,
+    /// Pixels of one.
+    pub height: usize,
+}
+
+impl Columns {
+    /// The first column of each kind.
+    pub(crate) fn firsts(&self) -> impl Iterator<Item = usize> {
+        let before = std::iter::once(None).chain(self.which.iter().map(Some));
+        let columns = self.which.iter().zip(before).enumerate();
+        columns.filter_map(|(column, (which, before))| (before != Some(which)).then_some(column))
+    }
+
+    /// All pixels, from those of the columns that differ.
+    pub(crate) fn all<T: Copy>(&self, differing: &[T]) -> Vec<T> {
+        let mut all = Vec::with_capacity(self.which.len() * self.height);
+        for &which in &self.which {
+            let begun = which as usize * self.height;
+            all.extend_from_slice(&differing[begun..begun + self.height]);
+        }
+        all
+    }
+}
+
 /// The numbers of a field, pixel by pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Numbers {
@@ -53,6 +81,8 @@ pub(crate) struct Shot {
     pub x: Shown,
     /// Along y.
     pub y: Option<Shown>,
+    /// Which columns of pixels are alike. What follows is of those that differ.
+    pub columns: Columns,
     /// The cells nearest to the pixels, those of the first x first; fill values where there is
     /// none.
     pub values: Numbers,

@@ -190,12 +190,13 @@ fn encoded(
         why: why.as_ref().map(|why| column(&why.values)),
     };
     // Many pixels may show the same cell.
-    let [across, up] = [Some(&shot.x), shot.y.as_ref()].map(|axis| axis.map(first_of_cell));
-    let height = up.as_ref().map_or(1, Vec::len).max(1);
-    let first = |axis: &Option<Vec<bool>>, pixel: usize| axis.as_ref().is_none_or(|of| of[pixel]);
+    let across = first_of_cell(&shot.x);
+    let across: Vec<bool> = shot.columns.firsts().map(|column| across[column]).collect();
+    let up = shot.y.as_ref().map_or_else(|| vec![true], first_of_cell);
+    let (columns, height) = (&shot.columns, shot.columns.height);
     let (shown, gaps) = cells.shown(
         |pixel| shot.bits[pixel] & (UNREAD | BEYOND) != 0,
-        |pixel| !first(&across, pixel / height) || !first(&up, pixel % height),
+        |pixel| !across[pixel / height] || !up[pixel % height],
     );
     let head = WindowHead {
         complete: shot.complete && why.as_ref().is_none_or(|why| why.complete),
@@ -205,14 +206,14 @@ fn encoded(
         x,
         y,
         at: at(facts, &asked.at, &[Some(asked.x), asked.y]),
-        status: arrays.push_runs(&shot.status),
-        gaps: arrays.push_runs(&gaps),
+        status: arrays.push_runs(&columns.all(&shot.status)),
+        gaps: arrays.push_runs(&columns.all(&gaps)),
         shown,
-        bits: arrays.push_runs(&shot.bits),
-        values: match shot.values {
-            Numbers::U8(values) => arrays.push_runs(&values),
-            Numbers::U16(values) => arrays.push_runs(&values),
-            Numbers::F64(values) => arrays.push(values),
+        bits: arrays.push_runs(&columns.all(&shot.bits)),
+        values: match &shot.values {
+            Numbers::U8(values) => arrays.push_runs(&columns.all(values)),
+            Numbers::U16(values) => arrays.push_runs(&columns.all(values)),
+            Numbers::F64(values) => arrays.push_runs(&columns.all(values)),
         },
         damage: shot.damage.or(why.and_then(|why| why.damage)),
         milliseconds: begun.elapsed().as_secs_f64() * 1e3,
