@@ -1,5 +1,6 @@
 //! The folders of a queue, and the names in them.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -94,7 +95,7 @@ impl Folder {
 
     /// The lock of a job.
     pub(crate) fn lock(&self, name: &Name) -> PathBuf {
-        self.place(Place::Queue).join(name.file(".", ".lock"))
+        self.place(Place::Queue).join(name.lock_file())
     }
 
     /// The file that workers share a lock on, as long as they are there.
@@ -112,6 +113,23 @@ impl Folder {
     /// # Errors
     /// When the system refuses.
     pub(crate) fn names(&self, place: Place) -> Result<Vec<Name>, StoreError> {
+        self.named(place, Name::of_file)
+    }
+
+    /// The names of jobs that have a lock.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(super) fn names_of_locks(&self) -> Result<Vec<Name>, StoreError> {
+        self.named(Place::Queue, Name::of_lock)
+    }
+
+    /// The names that files in one of the folders have, in their order.
+    fn named(
+        &self,
+        place: Place,
+        name_of: impl Fn(&OsStr) -> Option<Name>,
+    ) -> Result<Vec<Name>, StoreError> {
         let folder = self.place(place);
         let mut names = Vec::new();
         let entries = match fs::read_dir(&folder) {
@@ -120,7 +138,7 @@ impl Folder {
         };
         for entry in entries {
             let entry = entry.map_err(StoreError::io("read", &folder))?;
-            names.extend(Name::of_file(&entry.file_name()));
+            names.extend(name_of(&entry.file_name()));
         }
         names.sort_unstable();
         Ok(names)

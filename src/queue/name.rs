@@ -5,6 +5,9 @@ use std::fmt;
 
 /// The extension of sweep files.
 const ENDING: &str = ".toml";
+/// What is put around a name for its lock.
+const BEFORE_LOCK: &str = ".";
+const BEHIND_LOCK: &str = ".lock";
 /// The first number, and the distance of numbers, so that there is room before and between them.
 const FIRST: u64 = 100_000;
 const STEP: u64 = 10;
@@ -26,8 +29,19 @@ pub(crate) struct Name(OsString);
 impl Name {
     /// The name of a file in a folder of the queue; none if it is no sweep file.
     pub(crate) fn of_file(file: &OsStr) -> Option<Self> {
+        Self::within(file, "", ENDING)
+    }
+
+    /// The name of the job that a lock is of; none if it is no lock of a job.
+    pub(super) fn of_lock(file: &OsStr) -> Option<Self> {
+        Self::within(file, BEFORE_LOCK, BEHIND_LOCK)
+    }
+
+    /// The name between what is put before and behind it.
+    fn within(file: &OsStr, before: &str, behind: &str) -> Option<Self> {
         let bytes = file.as_encoded_bytes();
-        let stem = bytes.strip_suffix(ENDING.as_bytes())?;
+        let stem = bytes.strip_prefix(before.as_bytes())?;
+        let stem = stem.strip_suffix(behind.as_bytes())?;
         if stem.is_empty() || stem.starts_with(b".") {
             return None;
         }
@@ -76,6 +90,11 @@ impl Name {
     /// The name of its sweep file.
     pub(crate) fn sweep_file(&self) -> OsString {
         self.file("", ENDING)
+    }
+
+    /// The name of its lock.
+    pub(super) fn lock_file(&self) -> OsString {
+        self.file(BEFORE_LOCK, BEHIND_LOCK)
     }
 
     /// Its number and its word; none where a user has chosen another form.

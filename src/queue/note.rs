@@ -85,6 +85,21 @@ impl JobLock {
         Ok(taken.map(|file| Self { path, file }))
     }
 
+    /// Removes the locks that nobody holds of jobs that are nowhere, as kills leave them.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(crate) fn remove_strays(folder: &Folder) -> Result<(), StoreError> {
+        for name in folder.names_of_locks()? {
+            if folder.find(&name).is_none()
+                && let Some(lock) = Self::take(folder, &name)?
+            {
+                lock.remove()?;
+            }
+        }
+        Ok(())
+    }
+
     /// Its file.
     pub(crate) fn path(&self) -> &Path {
         &self.path

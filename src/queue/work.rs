@@ -132,6 +132,13 @@ impl<'a> Worker<'a> {
             while under_way.len() < most && !self.stopped() && found == Found::Job {
                 found = self.begin_next(&mut under_way)?;
             }
+            let is_idle = under_way.is_empty() && found == Found::Nothing;
+            if is_idle
+                && !was_idle
+                && let Err(trouble) = JobLock::remove_strays(self.folder)
+            {
+                (self.tell)(None, &Event::Trouble(&trouble.to_string()));
+            }
             let ends = match found {
                 _ if self.stopped() => under_way.iter().all(|job| job.course.goes_on_alone()),
                 Found::Nothing => self.options.until_empty && under_way.is_empty(),
@@ -141,7 +148,6 @@ impl<'a> Worker<'a> {
                 self.lines.end();
                 return Ok(self.brought);
             }
-            let is_idle = under_way.is_empty() && found == Found::Nothing;
             if is_idle && !was_idle && !self.options.until_empty {
                 (self.tell)(None, &Event::Idle);
             }

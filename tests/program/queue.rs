@@ -115,7 +115,14 @@ fn sweeps_are_submitted_in_order_and_computed() {
         0,
         "100010-b: is the first, as 099980-b",
     );
+    // As a kill leaves a lock: of a job that is nowhere, and of one that is there.
+    let locks = [".099000-gone.lock", ".100020-a.lock"]
+        .map(|lock| folder.path().join("q/queue").join(lock));
+    for lock in &locks {
+        fs::write(lock, "{}").unwrap();
+    }
     let told = work(&folder);
+    assert_eq!(locks.map(|lock| lock.exists()), [false, true]);
     expect(&told, 0, "099980-b: done; q/099980-b.h5: 1 240 cells");
     let order: Vec<usize> = ["099980-b", "099990-c", "100000-a"]
         .iter()
