@@ -79,17 +79,18 @@ impl Arrays {
 
     /// Adds numbers as runs of equal ones, or one by one where that is shorter.
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
-        let mut runs: Vec<(T, u32)> = Vec::new();
         // A run takes one number and four bytes.
         let most = size_of_val(numbers) / (size_of::<T>() + 4);
-        for run in numbers.chunk_by(|a, b| a.is(*b)) {
-            if runs.len() >= most {
-                return self.push(numbers.iter().copied());
-            }
+        let equal = || numbers.chunk_by(|a, b| a.is(*b));
+        let count = equal().take(most + 1).count();
+        if count > most {
+            return self.push(numbers.iter().copied());
+        }
+        let mut runs: Vec<(T, u32)> = Vec::with_capacity(count);
+        for run in equal() {
             let before = runs.last().map_or(0, |(_, end)| *end);
             runs.push((run[0], before + run.len() as u32));
         }
-        let count = runs.len();
         let array = self.push(runs.iter().map(|(number, _)| *number));
         self.push(runs.iter().map(|(_, end)| *end));
         Array {

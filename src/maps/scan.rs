@@ -47,6 +47,22 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// A file that is in no folder of maps.
+    pub(crate) fn alone(name: String, path: PathBuf) -> Self {
+        let mark = Mark {
+            file: Stamp::of(&path),
+            tiles: None,
+        };
+        Self {
+            id: id_of(&path),
+            name,
+            path,
+            mark,
+            running: false,
+            odd: None,
+        }
+    }
+
     /// Number of bytes of its files.
     pub(crate) fn bytes(&self) -> u64 {
         let file = self.mark.file.map_or(0, |stamp| stamp.length);

@@ -90,14 +90,15 @@ impl JobLock {
     /// # Errors
     /// When the system refuses.
     pub(crate) fn remove_strays(folder: &Folder) -> Result<(), StoreError> {
-        for name in folder.names_of_locks()? {
-            if folder.find(&name).is_none()
-                && let Some(lock) = Self::take(folder, &name)?
-            {
-                lock.remove()?;
-            }
-        }
-        Ok(())
+        let nowhere = |name: &Name| folder.find(name).is_none();
+        let remove = |name: &Name| match Self::take(folder, name)? {
+            // A job of this name may have come meanwhile.
+            Some(lock) if nowhere(name) => lock.remove(),
+            _ => Ok(()),
+        };
+        let strays = folder.names_of_locks()?.into_iter().filter(nowhere);
+        let removed: Vec<_> = strays.map(|name| remove(&name)).collect();
+        removed.into_iter().collect()
     }
 
     /// Its file.

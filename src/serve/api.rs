@@ -50,11 +50,17 @@ pub(super) fn routes(access: Arc<Access>, work: Work, jobs: Jobs) -> Router {
         .fallback(nothing)
         .method_not_allowed_fallback(no_such_method);
     all.layer(DefaultBodyLimit::max(LONGEST_BODY))
-        .layer(middleware::from_fn(|request, next| {
-            connections::read_body(request, LONGEST_BODY, next)
-        }))
+        .layer(middleware::from_fn(bounded))
         .layer(middleware::from_fn_with_state(served.clone(), guarded))
         .with_state(served)
+}
+
+/// Reads the body of a request, unless it is a map, before the request is handled.
+async fn bounded(request: Request, next: Next) -> Response {
+    match maps::is_visit(request.method(), request.uri()) {
+        true => next.run(request).await,
+        false => connections::read_body(request, LONGEST_BODY, next).await,
+    }
 }
 
 /// Refuses requests without access, and adds the restrictions for browsers to every answer.

@@ -42,8 +42,8 @@ pub(super) fn said<T>(query: Asked<T>) -> Result<T, Problem> {
     Ok(said?.0)
 }
 
-/// Whether a request says that its text is of this kind, and of no other.
-fn is(kind: &str, headers: &HeaderMap) -> bool {
+/// Whether a request says that its body is of this kind, and of no other.
+pub(super) fn is(kind: &str, headers: &HeaderMap) -> bool {
     let mut kinds = headers.get_all(CONTENT_TYPE).iter();
     let said = kinds.next().filter(|_| kinds.next().is_none());
     let said = said.and_then(|said| said.to_str().ok());

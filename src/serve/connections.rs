@@ -27,7 +27,7 @@ use super::problem::Problem;
 /// The most connections that are open at a time.
 const MOST_OPEN: usize = 512;
 /// The longest time to read the head of a request, and again to read its body.
-const TO_ASK: Duration = Duration::from_secs(10);
+pub(super) const TO_ASK: Duration = Duration::from_secs(10);
 /// The longest time a client may take to read an answer.
 const TO_READ: Duration = Duration::from_secs(60);
 /// The time before another try when the system gives no connection.
@@ -143,12 +143,7 @@ pub(super) fn is_answered(request: &Request) {
 /// Reads the body of a request, of at most `most` bytes, before the request is handled.
 pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Response {
     let (head, body) = request.into_parts();
-    let refused = |status, detail: &str| {
-        let mut response = Problem::of(status, detail).into_response();
-        let close = header::HeaderValue::from_static("close");
-        response.headers_mut().insert(header::CONNECTION, close);
-        response
-    };
+    let refused = |status, detail: &str| closing(Problem::of(status, detail));
     match timeout(TO_ASK, to_bytes(body, most)).await {
         Ok(Ok(bytes)) => next.run(Request::from_parts(head, Body::from(bytes))).await,
         Ok(Err(error)) if is_of_connection(&error) => refused(
@@ -158,6 +153,14 @@ pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Resp
         Ok(Err(_)) => refused(StatusCode::PAYLOAD_TOO_LARGE, "the request is too long"),
         Err(_) => refused(StatusCode::REQUEST_TIMEOUT, "the request came too slowly"),
     }
+}
+
+/// The answer about a request whose body is not read to its end: the connection is closed.
+pub(super) fn closing(problem: Problem) -> Response {
+    let mut response = problem.into_response();
+    let close = header::HeaderValue::from_static("close");
+    response.headers_mut().insert(header::CONNECTION, close);
+    response
 }
 
 /// Whether a body could not be read, rather than being too long.

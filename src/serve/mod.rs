@@ -187,6 +187,7 @@ impl Server {
             .enable_all()
             .build()?;
         let work = Work::new(self.threads);
+        let maps = Arc::clone(&self.jobs.maps);
         let app = api::routes(self.access, work, self.jobs);
         let ended = runtime.block_on(async move {
             let (listener, _socket) = self.bound.listener()?;
@@ -201,6 +202,7 @@ impl Server {
             }
             Ok(())
         });
+        maps.close();
         // Running computations are told to stop, but not waited for.
         runtime.shutdown_background();
         ended

@@ -30,6 +30,14 @@ impl Problem {
         Self::of(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
     }
 
+    /// The problem of a request by those who may only look.
+    pub(super) fn for_others() -> Self {
+        Self {
+            help: Some("slipmap serve has printed another link, for who may do that".into()),
+            ..Self::of(StatusCode::FORBIDDEN, "this link is for those who look")
+        }
+    }
+
     /// The problem of a request that is not text but should be.
     pub(super) fn no_text() -> Self {
         Self::of(StatusCode::BAD_REQUEST, "the text is not UTF-8")

@@ -308,6 +308,21 @@ test("from a measured curve to a marked best setting in five clicks", async () =
   assert.deepEqual(page.faults.filter((fault) => !/status of 422/.test(fault)), []);
 });
 
+test("a map that is dropped is shown as from a folder, and is in no list", async () => {
+  const folder = newFolder();
+  const sweep = join(ROOT, "sweeps/fig2a.toml");
+  const map = join(folder, "own.h5");
+  slipmap(["run", sweep, "-o", map]);
+  const page = await openPage(browser, server.link);
+  await drop(page, "own.h5", readFileSync(map));
+  await eventually(async () => assert.match(await text(page, "map-title"), /own\.h5/));
+  await atRest(page);
+  assert.match(page.url(), /map=[0-9a-f]{16}/);
+  assert.equal(await page.locator("#maps").getByText("own.h5").count(), 0);
+  assert.match(await text(page, "readout"), /stable|unstable/);
+  assert.deepEqual(page.faults, []);
+});
+
 test("whatever is dropped leads to words, and the page goes on", async () => {
   const page = await openPage(browser, server.link);
   const big = join(newFolder(), "big.csv");
@@ -317,7 +332,7 @@ test("whatever is dropped leads to words, and the page goes on", async () => {
   await drop(page, "names.toml", Buffer.from('[axes]\ntau = [1, 2]\n[friction]\nlaw = "table"\ntable = "/etc/passwd"\n'));
   await eventually(async () => assert.match(await text(page, "problem"), /names\.toml: .*(file|table)/));
   await drop(page, "map.h5", Buffer.from("\x89HDF\r\n\x1a\n"));
-  await eventually(async () => assert.match(await text(page, "problem"), /slipmap serve FOLDER/));
+  await eventually(async () => assert.match(await text(page, "problem"), /map\.h5: the map cannot be read/));
   const sound = readFileSync(join(ROOT, "sweeps/fig3a.toml"));
   const numbers = chance(7);
   for (let k = 0; k < 200; k++) {

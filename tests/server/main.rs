@@ -28,6 +28,8 @@ mod serve;
 mod serve_maps;
 mod systems;
 mod traces;
+#[cfg(target_os = "linux")]
+mod visiting;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -42,7 +42,7 @@ use std::time::{Duration, Instant};
 pub(crate) use canvas::{BEYOND, UNREAD};
 pub(crate) use pixels::{Scale, Stretch, finite};
 pub(crate) use source::Facts;
-pub(crate) use window::{Asked, Numbers, Shot, Shown};
+pub(crate) use window::{Asked, Numbers, Shot, Shown, changes};
 
 use jobs::Job;
 use reading::Reading;

@@ -29,6 +29,11 @@ pub(crate) struct Shown {
     pub values: Vec<f64>,
 }
 
+/// Whether each number is another one than that before it.
+pub(crate) fn changes(numbers: &[u32]) -> impl Iterator<Item = bool> {
+    (0..numbers.len()).map(|i| i == 0 || numbers[i] != numbers[i - 1])
+}
+
 /// Columns of pixels: neighbours are alike where cells are wider than pixels.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Columns {
@@ -41,9 +46,8 @@ pub(crate) struct Columns {
 impl Columns {
     /// The first column of each kind.
     pub(crate) fn firsts(&self) -> impl Iterator<Item = usize> {
-        let before = std::iter::once(None).chain(self.which.iter().map(Some));
-        let columns = self.which.iter().zip(before).enumerate();
-        columns.filter_map(|(column, (which, before))| (before != Some(which)).then_some(column))
+        let columns = changes(&self.which).enumerate();
+        columns.filter_map(|(column, is_first)| is_first.then_some(column))
     }
 
     /// All pixels, from those of the columns that differ.

@@ -21,8 +21,7 @@ impl Jobs {
         let forbidden = |detail: &str| Problem::of(StatusCode::FORBIDDEN, detail);
         match (self.submission.keep_free, role) {
             (Some(keep_free), Role::Any) => Ok(keep_free),
-            (Some(_), Role::Look) => Err(forbidden("this link is for those who look")
-                .help("slipmap serve has printed another link, for who may hand in sweeps")),
+            (Some(_), Role::Look) => Err(Problem::for_others()),
             (None, _) => Err(forbidden("this server takes no sweeps, and changes none")
                 .help("slipmap serve FOLDER --submit does")),
         }

@@ -12,7 +12,9 @@ use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::Arrays;
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
-use crate::maps::look::{Asked, BEYOND, Facts, Look, Numbers, Scale, Shot, Shown, Stretch, UNREAD};
+use crate::maps::look::{
+    Asked, BEYOND, Facts, Look, Numbers, Scale, Shot, Shown, Stretch, UNREAD, changes,
+};
 use crate::meaning::gap::Rule;
 use crate::meaning::shown::{Cells, Column};
 use crate::setting::Field;
@@ -140,13 +142,6 @@ pub(super) fn window(
     encoded(look, &asked, (shot, why), begun).map_err(Refused::damaged)
 }
 
-/// Whether each pixel along an axis is the first one that shows its cell.
-fn first_of_cell(axis: &Shown) -> Vec<bool> {
-    let before = std::iter::once(None).chain(axis.index.iter().map(Some));
-    let pixels = axis.index.iter().zip(before);
-    pixels.map(|(cell, before)| before != Some(cell)).collect()
-}
-
 /// Whether some cell that was read has no value.
 fn has_empty(shot: &Shot) -> bool {
     let values = column(&shot.values);
@@ -190,9 +185,11 @@ fn encoded(
         why: why.as_ref().map(|why| column(&why.values)),
     };
     // Many pixels may show the same cell.
-    let across = first_of_cell(&shot.x);
-    let across: Vec<bool> = shot.columns.firsts().map(|column| across[column]).collect();
-    let up = shot.y.as_ref().map_or_else(|| vec![true], first_of_cell);
+    let index = |column: usize| shot.x.index[column];
+    let across: Vec<u32> = shot.columns.firsts().map(index).collect();
+    let across: Vec<bool> = changes(&across).collect();
+    let up = shot.y.as_ref().map_or(&[0][..], |y| &y.index);
+    let up: Vec<bool> = changes(up).collect();
     let (columns, height) = (&shot.columns, shot.columns.height);
     let (shown, gaps) = cells.shown(
         |pixel| shot.bits[pixel] & (UNREAD | BEYOND) != 0,

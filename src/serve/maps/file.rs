@@ -28,7 +28,7 @@ use crate::store::regular;
 use crate::store::stamp::Stamp;
 
 /// The type of HDF5 files.
-const KIND: &str = "application/x-hdf5";
+pub(super) const KIND: &str = "application/x-hdf5";
 /// Bytes that are read at a time.
 const PIECE: u64 = 1 << 16;
 

@@ -21,6 +21,7 @@
 //! - `routes`: the addresses of requests about maps
 //! - `test_reader`: a process for tests that can be held
 //! - `traces`: the description and the motion of a trace as answers
+//! - `visiting`: maps that are handed over to be looked at
 
 mod answers;
 mod child;
@@ -36,8 +37,10 @@ mod routes;
 #[cfg(all(test, unix))]
 mod test_reader;
 mod traces;
+mod visiting;
 
 pub use child::read_map;
 pub use process::ReaderCommand;
 pub(super) use readers::Maps;
 pub(super) use routes::routes;
+pub(super) use visiting::is_visit;

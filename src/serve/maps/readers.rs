@@ -11,6 +11,7 @@ use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
 use super::places::Places;
 use super::process::{ReaderCommand, Trouble};
+use super::visiting::Visiting;
 use crate::explore::motion;
 use crate::maps::scan::Found;
 use crate::serve::problem::Problem;
@@ -33,6 +34,7 @@ const MOST_OPENED: usize = 3;
 #[derive(Debug)]
 pub(in crate::serve) struct Maps {
     pub(super) list: Arc<List>,
+    pub(super) visiting: Visiting,
     places: Arc<Places>,
     room: Room,
     /// Files that are sent.
@@ -44,6 +46,7 @@ impl Maps {
     pub(in crate::serve) fn below(folder: &Path, command: ReaderCommand) -> Self {
         Self {
             list: Arc::new(List::of(folder, command.clone())),
+            visiting: Visiting::default(),
             places: Places::of(command),
             room: Room::of(ROOM),
             sending: Arc::new(Semaphore::new(MOST_SENT)),
@@ -62,6 +65,11 @@ impl Maps {
             let detail = "the maps of the folder cannot be read in time";
             Problem::of(StatusCode::SERVICE_UNAVAILABLE, detail)
         })
+    }
+
+    /// Lets maps go that only visit: the server ends.
+    pub(in crate::serve) fn close(&self) {
+        self.visiting.close();
     }
 
     /// Takes room for the answer about a window, waiting while others are sent.

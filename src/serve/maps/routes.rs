@@ -15,6 +15,7 @@ use super::described::{AnyDescription, CurvesHead, MapCell, MapDescription, MapL
 use super::file;
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::{Maps, no_map};
+use super::visiting;
 use crate::maps::look::finite;
 use crate::maps::scan::Found;
 use crate::serve::asked::{Asked, Named, said};
@@ -27,7 +28,7 @@ where
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::with_openapi(Schemas::openapi())
-        .routes(routes!(list))
+        .routes(routes!(list, visiting::visit))
         .routes(routes!(description))
         .routes(routes!(window))
         .routes(routes!(curves))
@@ -64,8 +65,10 @@ enum NoMap {
 const ENCODED: &str = "application/octet-stream";
 
 async fn found(maps: &Maps, id: &str) -> Result<Found, Problem> {
-    let found = maps.list.find(id).await;
-    found.ok_or_else(no_map)
+    match maps.visiting.find(id) {
+        Some(visitor) => Ok(visitor),
+        None => maps.list.find(id).await.ok_or_else(no_map),
+    }
 }
 
 fn answered(frame: Frame) -> Response {

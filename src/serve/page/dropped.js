@@ -2,15 +2,20 @@
 
 import { GAINS, SHOWN, UNITS } from "./catalogue.js";
 import { element } from "./dom.js";
+import { bytesOf, textOf } from "./file.js";
 import { parametersOf } from "./sweep.js";
 
-/** The most bytes of a text that is read, as the server has it. */
-const MOST = 2 ** 18;
-/** How names of measured curves and of texts of settings end. */
-const [CURVES, TEXTS] = [
+/** How names of measured curves, of texts of settings and of maps end. */
+const [CURVES, TEXTS, MAPS] = [
   ["csv", "tsv", "txt", "dat"],
   ["toml"],
+  ["h5", "hdf5", "nc"],
 ];
+/** The most bytes of a map that the server takes. */
+const LARGEST_MAP = 2 ** 26;
+
+/** What can be dropped. */
+const OFFER = "A friction curve (CSV), a sweep, case or setting (TOML), or a map (HDF5)";
 
 const ending = ({ name }) => name.split(".").pop().toLowerCase();
 
@@ -70,11 +75,12 @@ export class Dropped {
   /**
    * @param {object} source see source.js
    * @param {{curve: (text: string) => void, setting: (given: object, name: string) => void,
-   *   failed: (error: Error) => void}} done
+   *   map: (id: string) => void, failed: (error: Error) => void}} done
    */
   constructor(source, done) {
     Object.assign(this, { source, ...done });
     const over = element("dropping");
+    over.textContent = OFFER;
     const files = ({ dataTransfer }) => dataTransfer?.types.includes("Files");
     document.addEventListener("dragover", (event) => {
       if (!files(event)) return;
@@ -82,12 +88,12 @@ export class Dropped {
       over.hidden = false;
     });
     document.addEventListener("dragleave", (event) => {
-      if (!event.relatedTarget) over.hidden = true;
+      if (!event.relatedTarget) over.hidden = !this.visiting;
     });
     document.addEventListener("drop", (event) => {
       if (!files(event)) return;
       event.preventDefault();
-      over.hidden = true;
+      over.hidden = !this.visiting;
       this.#read([...event.dataTransfer.files]);
     });
     element("file").addEventListener("change", ({ target }) => {
@@ -109,18 +115,50 @@ export class Dropped {
 
   async #take(file) {
     const kind = ending(file);
+    if (MAPS.includes(kind)) {
+      await this.#visit(file);
+      return;
+    }
     const curve = CURVES.includes(kind);
     if (!curve && !TEXTS.includes(kind)) {
-      const known = [...CURVES, ...TEXTS].map((of) => `.${of}`).join(", ");
-      const help = kind === "h5" ? "; maps are shown by `slipmap serve FOLDER`" : "";
-      throw new RangeError(`a file that ends with one of ${known} is read${help}`);
+      const known = [...CURVES, ...TEXTS, ...MAPS].map((of) => `.${of}`).join(", ");
+      throw new RangeError(`a file that ends with one of ${known} is read`);
     }
-    if (file.size > MOST) {
-      throw new RangeError(`${file.size} bytes; at most ${MOST} are read`);
-    }
-    const text = new TextDecoder("utf-8", { fatal: !curve }).decode(await file.arrayBuffer());
-    if (text.includes("\0")) throw new RangeError("it is no text");
+    const text = await textOf(file, { strict: !curve });
     if (curve) this.curve(text);
     else await this.setting(await this.source.setting(text), file.name);
+  }
+
+  /** Lets the server look at a map, which it does not keep. */
+  async #visit(file) {
+    const instead = "put it into a folder that `slipmap serve FOLDER` shows";
+    if (!this.source.visit) throw new RangeError(`this page has no server: ${instead}`);
+    if (file.size > LARGEST_MAP) {
+      throw new RangeError(`${file.size} bytes; at most ${LARGEST_MAP} are taken: ${instead}`);
+    }
+    // What the browser cannot read is not the server's fault.
+    await bytesOf(file.slice(0, 1));
+    this.visiting?.abort();
+    const visiting = new AbortController();
+    Object.assign(this, { visiting });
+    this.#say(`Reading ${file.name} …`);
+    try {
+      const { id } = await this.source.visit(file, visiting.signal);
+      if (!visiting.signal.aborted) this.map(id);
+    } catch (error) {
+      // Another one was dropped meanwhile.
+      if (!visiting.signal.aborted) throw error;
+    } finally {
+      if (this.visiting === visiting) {
+        this.visiting = null;
+        this.#say(null);
+      }
+    }
+  }
+
+  /** What is said over the page: of a map that is sent, else nothing. */
+  #say(words) {
+    const over = element("dropping");
+    [over.hidden, over.textContent] = [words === null, words ?? OFFER];
   }
 }

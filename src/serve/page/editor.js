@@ -3,31 +3,13 @@
 import { bytes, count, seconds } from "./amounts.js";
 import { Asked } from "./asked.js";
 import { element, input, make, terms } from "./dom.js";
+import { Kept } from "./kept.js";
 import { partsOf, placeOf } from "./mistake.js";
 
 /** How long nothing is typed before the text is looked at, in milliseconds. */
 const REST = 300;
 /** Where a text that was not handed in waits for the page, should that be loaded anew. */
-const KEPT = "slipmap sweep";
-
-/** @returns {any} what was kept */
-function kept() {
-  try {
-    return JSON.parse(sessionStorage.getItem(KEPT) ?? "null");
-  } catch {
-    return null;
-  }
-}
-
-/** Keeps something; nothing with null. */
-function keep(what) {
-  try {
-    if (what) sessionStorage.setItem(KEPT, JSON.stringify(what));
-    else sessionStorage.removeItem(KEPT);
-  } catch {
-    // Then it is not kept.
-  }
-}
+const draft = new Kept("slipmap sweep");
 
 export class Editor {
   text = /** @type {HTMLTextAreaElement} */ (element("sweep-text"));
@@ -59,7 +41,7 @@ export class Editor {
     this.plans = new Asked((text, signal) => source.plan(text, false, signal), heard);
     this.times = new Asked((text, signal) => source.plan(text, true, signal), heard);
     this.#listen();
-    const { text = "", title = "", first = false, hold = false } = kept() ?? {};
+    const { text = "", title = "", first = false, hold = false } = draft.read() ?? {};
     [this.text.value, this.title.value] = [text, title];
     [this.first.checked, this.hold.checked] = [first, hold];
     this.#tell();
@@ -121,7 +103,7 @@ export class Editor {
   #keep() {
     const [text, title] = [this.text.value, this.title.value];
     const all = { text, title, first: this.first.checked, hold: this.hold.checked };
-    keep(text || title ? all : null);
+    draft.write(text || title ? all : null);
   }
 
   /** Takes a sweep in the place of what is there, which can be taken back. */
@@ -249,7 +231,7 @@ export class Editor {
     try {
       const { job, isNew } = await this.source.submit(text, options);
       if (this.text.value === text) {
-        keep(null);
+        draft.write(null);
         [this.before, this.sent] = [null, true];
         this.first.checked = this.hold.checked = false;
       }

@@ -7,6 +7,7 @@ import { copy, download, element } from "./dom.js";
 import { Dropped, take } from "./dropped.js";
 import { Following } from "./following.js";
 import { learn } from "./formula.js";
+import { offerHelp } from "./help.js";
 import { Helping } from "./helping.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
@@ -96,6 +97,7 @@ class Explorer {
     this.dropped = new Dropped(source, {
       curve: (text) => this.#dropCurve(text),
       setting: (given, name) => this.#dropSetting(given, name),
+      map: (id) => this.saved.choose(id),
       failed,
     });
     offerPresets();
@@ -564,12 +566,7 @@ class Explorer {
       event.preventDefault();
       element("chart-title").focus();
     });
-    const help = () => element("help").showModal();
-    click("to-help", help);
-    document.addEventListener("keydown", (event) => {
-      if (event.key !== "?" || event.target.matches("input, textarea, select")) return;
-      if (!element("help").open) help();
-    });
+    offerHelp();
     click("sheet", () => {
       const sheet = element("sheet");
       const open = sheet.getAttribute("aria-expanded") !== "true";

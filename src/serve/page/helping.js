@@ -27,7 +27,11 @@ export class Helping {
     });
     const click = (id, act) => element(id).addEventListener("click", act);
     click("fit", () => this.fit());
-    click("where-stable", () => this.fit());
+    click("where-stable", () => {
+      // The button goes once something stable is in view.
+      element("chart-title").focus();
+      this.fit();
+    });
     click("best", () => this.best());
     click("compare", () => this.#compare());
   }
@@ -121,11 +125,13 @@ export class Helping {
       button.addEventListener("click", () => this.takes(point));
       return make("p", {}, button, " ", then);
     };
-    const rows = [offer("Take the best", placed(best), time(best.relaxation_time))];
+    const proof = ({ certified }) => (certified ? "" : "; not certified");
+    const settles = time(best.relaxation_time) + proof(best);
+    const rows = [offer("Take the best", placed(best), settles)];
     if (robust) {
       const off = told(100 * robust.spread, 3);
       const worst = `${time(robust.worst_relaxation_time)} where all is off by up to ${off} %`;
-      rows.push(offer("Take the robust one", placed(robust), worst));
+      rows.push(offer("Take the robust one", placed(robust), worst + proof(robust)));
     }
     element("best-told").replaceChildren(...rows);
   }

@@ -2,13 +2,12 @@
 
 import { FILE } from "./catalogue.js";
 import { element, make } from "./dom.js";
+import { textOf } from "./file.js";
 import { partsOf, placeOf } from "./mistake.js";
 
 /** What the block is called. */
 const BLOCK = "a block on its spring";
 const FROM_TEXT = "a system from a text or a file";
-/** The most bytes of a text that the server takes. */
-const LONGEST = 1 << 18;
 /** What the page cannot show, though it is a system. */
 const TOO_FEW = "A chart needs two parameters: give the system one besides its delay.";
 
@@ -93,16 +92,16 @@ export class ModelChoice {
   async #open(chooser) {
     const [file] = chooser.files;
     if (!file) return;
-    if (file.size > LONGEST) {
-      const most = `${LONGEST >> 10} kB are the most`;
-      this.#tellMistake(new RangeError(`${file.name} is too long: ${most}`));
-      return;
-    }
-    const text = await file.text();
     // The same file may be chosen again, when it has changed.
     chooser.value = "";
-    element("system-text").value = text;
-    await this.#read(text);
+    try {
+      const text = await textOf(file);
+      element("system-text").value = text;
+      await this.#read(text);
+    } catch (error) {
+      error.message = `${file.name}: ${error.message}`;
+      this.#tellMistake(error);
+    }
   }
 
   /** Takes a text: its parameters get sliders, and a mistake is told below it. */

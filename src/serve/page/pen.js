@@ -104,12 +104,12 @@ const short = (x) => Number(x.toFixed(2));
 /** Writes an SVG file of the same size as a canvas. */
 export class SvgPen {
   /**
-   * @param {HTMLCanvasElement} canvas whose style it takes
    * @param {number[]} size in CSS pixels
+   * @param {CSSStyleDeclaration} style the colours
    */
-  constructor(canvas, size) {
+  constructor(size, style) {
     [this.width, this.height] = size;
-    this.style = getComputedStyle(canvas);
+    this.style = style;
     this.parts = [];
     this.clips = 0;
   }

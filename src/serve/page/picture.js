@@ -1,5 +1,6 @@
 // A file of what is seen: title, fixed parameters, the plane and its legend, without the point.
 
+import { element } from "./dom.js";
 import { areaWithin } from "./frame.js";
 import { drawLegend, heightOf, widthOf } from "./legend.js";
 import { CanvasPen, SvgPen } from "./pen.js";
@@ -20,6 +21,9 @@ function wrapped(words, most, between) {
   }
   return lines;
 }
+
+/** The colours of a file. */
+const paper = () => getComputedStyle(element("paper"));
 
 /** What stands where on a sheet. */
 function sheetOf({ canvas, plane }, title) {
@@ -61,7 +65,7 @@ function draw(view, pen, { lines, area, legend }) {
  */
 export function svgOf(view, title) {
   const sheet = sheetOf(view, title);
-  const pen = new SvgPen(view.canvas, sheet.size);
+  const pen = new SvgPen(sheet.size, paper());
   draw(view, pen, sheet);
   return pen.file();
 }
@@ -70,7 +74,6 @@ export function svgOf(view, title) {
 export function pngOf(view, title) {
   const sheet = sheetOf(view, title);
   const canvas = document.createElement("canvas");
-  const style = getComputedStyle(view.canvas);
-  draw(view, new CanvasPen(canvas, { size: sheet.size, style }), sheet);
+  draw(view, new CanvasPen(canvas, { size: sheet.size, style: paper() }), sheet);
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }

@@ -99,6 +99,8 @@ export class PlaneView {
     pen.box(area, { fill: pen.colour("empty") });
     pen.within(area, () => {
       pen.image(this.image, this.#imageBox(area));
+      const shade = pen.colour("shade");
+      if (shade) pen.box(area, { fill: shade });
       this.#drawCurves(pen, area);
       if (point && this.best) this.#drawBest(pen, area);
       // Only where its axes are those that are seen.

@@ -106,7 +106,7 @@ export function countsOf(chart) {
 
 /** A chart of counts over two axes. */
 async function countsOver(state, catalogue, source, [x, y], signal) {
-  const text = sweepOf({ ...state, x, y }, catalogue, CELLS, ["n_unstable"]);
+  const text = sweepOf({ ...state, x, y }, catalogue, CELLS, ["n_unstable"], false);
   const chart = await source.chart(text, signal);
   const [nx, ny] = chart.axes.map(({ values }) => values.length);
   return { axes: chart.axes, nx, ny, counts: countsOf(chart) };

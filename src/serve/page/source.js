@@ -109,6 +109,8 @@ function server() {
     system: (toml, signal) => json(post("system", toml, signal)),
     parameters: (signal) => json(get("parameters", signal)),
     maps: (signal) => json(get("maps", signal)),
+    visit: (file, signal) =>
+      json(send("POST", `maps?${new URLSearchParams({ name: file.name })}`, "x-hdf5", file, signal)),
     map: (id, signal) => json(get(`maps/${id}`, signal)),
     window: (id, query, signal) => decoded(get(of(id, "window", query), signal)),
     curves: (id, query, signal) => decoded(get(of(id, "curves", query), signal)),

@@ -108,7 +108,8 @@ export function sweepOf(state, catalogue, points, fields, curved = true) {
     return `${word} = { from = ${from}, to = ${to}, points = ${points[i]}${spacing} }\n`;
   });
   const delay = axes.some(({ name }) => name === "tau");
-  const curves = delay ? `boundaries = ${curved}\n` : "";
+  // Without a key, planes that can have curves are walked for them.
+  const curves = delay || !curved ? `boundaries = ${curved}\n` : "";
   const list = fields.map((field) => `"${field}"`).join(", ");
   return (
     `${systemOf(state, catalogue)}fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +

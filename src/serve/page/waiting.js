@@ -57,6 +57,9 @@ export class Waiting {
     const button = make("button", { type: "button" }, "Compute it");
     button.addEventListener("click", () => {
       this.#clear();
+      // The button is gone then.
+      this.place.tabIndex = -1;
+      this.place.focus();
       this.again();
     });
     this.place.replaceChildren(`${this.what}: stopped `, button);
