@@ -876,7 +876,10 @@ test("ticks of a narrow view can be told apart, and are not cut off", async () =
     const { labels, over } = await page.evaluate(async () => {
       const { plane } = window.slipmap;
       const { SvgPen } = await import("./pen.js");
-      const pen = new SvgPen(plane.canvas, [plane.canvas.clientWidth, plane.canvas.clientHeight]);
+      const pen = new SvgPen(
+        [plane.canvas.clientWidth, plane.canvas.clientHeight],
+        getComputedStyle(plane.canvas),
+      );
       plane.drawWith(pen);
       const svg = new DOMParser().parseFromString(pen.file(), "image/svg+xml").documentElement;
       document.body.append(svg);

@@ -238,6 +238,8 @@ test("what takes long says how long, and is stopped", async () => {
   await waiting.getByRole("button", { name: "Compute it" }).click();
   await eventually(async () => assert.match(await waiting.textContent(), /computing for [1-9]/));
   assert.deepEqual(page.faults, []);
+  // Nobody waits for it any more.
+  await page.close();
 });
 
 /** Drops a file with these bytes onto the page. */
@@ -290,6 +292,7 @@ test("from a measured curve to a marked best setting in five clicks", async () =
   await eventually(async () => assert.match(await text(page, "law-told"), /at v0 = 0\.\d+ m s-1/));
   // Three: where it is stable. Four: the best setting. Five: that one.
   await page.locator("#fit").click();
+  await eventually(async () => assert.ok((await page.evaluate(() => window.slipmap.state.y.to)) < 2));
   await eventually(async () => assert.match(await text(page, "readout"), /: stable/));
   await page.locator("#best").click();
   await page.getByRole("button", { name: "Take the best" }).click({ timeout: 30000 });
@@ -309,15 +312,15 @@ test("from a measured curve to a marked best setting in five clicks", async () =
 });
 
 test("a map that is dropped is shown as from a folder, and is in no list", async () => {
-  const folder = newFolder();
-  const sweep = join(ROOT, "sweeps/fig2a.toml");
-  const map = join(folder, "own.h5");
+  const [sweep, map] = [join(newFolder(), "own.toml"), join(newFolder(), "own.h5")];
+  writeFileSync(sweep, "[axes]\nalpha_v = { from = -1.6, to = 0.4, points = 40 }\n" +
+    "tau = { from = 0.0, to = 12.0, points = 30 }\n[fixed]\nmu_prime = -0.3\n");
   slipmap(["run", sweep, "-o", map]);
   const page = await openPage(browser, server.link);
   await drop(page, "own.h5", readFileSync(map));
   await eventually(async () => assert.match(await text(page, "map-title"), /own\.h5/));
   await atRest(page);
-  assert.match(page.url(), /map=[0-9a-f]{16}/);
+  await eventually(async () => assert.match(page.url(), /map=[0-9a-f]{16}/));
   assert.equal(await page.locator("#maps").getByText("own.h5").count(), 0);
   assert.match(await text(page, "readout"), /stable|unstable/);
   assert.deepEqual(page.faults, []);
@@ -345,7 +348,6 @@ test("whatever is dropped leads to words, and the page goes on", async () => {
     await drop(page, kind === 3 ? `odd${k}.csv` : `odd${k}.toml`, cut);
     await page.waitForTimeout(20);
   }
-  await settled(page);
   await show(page, LAW);
   assert.match(await text(page, "readout"), /stable/);
   const unexpected = page.faults.filter((fault) => !/status of 4\d\d/.test(fault));

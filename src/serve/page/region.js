@@ -5,6 +5,8 @@ import { sweepOf } from "./sweep.js";
 
 /** Cells of the charts in which a region is looked for, along x and y. */
 const CELLS = [300, 240];
+/** What is searched of an axis where only what is usual is asked for, as a part of it. */
+const CORNER = 1e-3;
 /** What is shown around a region, as a part of it. */
 const ROOM = 0.12;
 
@@ -40,7 +42,11 @@ export function bestIn(state, catalogue, source, signal) {
 /** The ends of both axes within which everything is looked for: those of a search, or of a slider. */
 async function widest(state, catalogue, source, signal) {
   const names = searched(state);
-  const first = Object.fromEntries(names.map((name) => [name, catalogue.about(name).page.axis]));
+  // What is usual does not depend on where is searched, and a corner is searched soon.
+  const corner = ([from, to]) => [from, from + CORNER * (to - from)];
+  const first = Object.fromEntries(
+    names.map((name) => [name, corner(catalogue.about(name).page.axis)]),
+  );
   // Where nothing is searched, the ends of the sliders do.
   const none = (error) => {
     if (signal.aborted || !error.status) throw error;
