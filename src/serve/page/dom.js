@@ -22,11 +22,15 @@ export function make(tag, properties = {}, ...children) {
   return made;
 }
 
+/** A text of more letters has a row of its own where terms stand beside one another. */
+const LONG = 60;
+
 /** Rows of a list of terms. */
 export function terms(list, rows) {
-  const parts = rows.map(([term, text]) =>
-    make("div", {}, make("dt", {}, term), make("dd", {}, text)),
-  );
+  const parts = rows.map(([term, text]) => {
+    const className = text.length > LONG ? "long" : "";
+    return make("div", { className }, make("dt", {}, term), make("dd", {}, text));
+  });
   list.replaceChildren(...parts);
 }
 
