@@ -201,8 +201,8 @@ mod tests {
         assert_eq!(sweep.fields, ["n_unstable", "vc"]);
         let case = read(
             "switch_on = 70.0\n[fixed]\nv0 = 0.35\ntau = 4.15\n[friction]\nlaw = \"table\"\n\
-             speeds = [0.0, 1.0]\nmu_k = [0.5, 0.25]\n[start]\nx_dot0 = 0.3\n[units]\nforce = \"N\"\n\
-             length = \"m\"\ntime = \"s\"\n",
+             speeds = [0.0, 1.0]\nmu_k = [0.5, 0.25]\n[start]\nx_dot0 = 0.3\n[units]\n\
+             force = \"N\"\nlength = \"m\"\ntime = \"s\"\n",
         );
         let case = case.unwrap();
         assert_eq!(case.left_out, ["switch_on"]);

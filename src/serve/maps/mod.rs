@@ -14,6 +14,7 @@
 //! - `description`: the description of a map, besides its cells
 //! - `file`: the file of a map, whole or in ranges
 //! - `frames`: messages between the server and the process
+//! - `handing`: the request that hands over a map
 //! - `list`: the maps of a folder, each with the summary from a process of its own
 //! - `places`: the processes that may run at a time
 //! - `process`: the server's side of a process that reads a map
@@ -29,6 +30,7 @@ mod described;
 mod description;
 mod file;
 mod frames;
+mod handing;
 mod list;
 mod places;
 mod process;
@@ -40,7 +42,7 @@ mod traces;
 mod visiting;
 
 pub use child::read_map;
+pub(super) use handing::is_visit;
 pub use process::ReaderCommand;
 pub(super) use readers::Maps;
 pub(super) use routes::routes;
-pub(super) use visiting::is_visit;

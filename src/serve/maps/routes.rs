@@ -14,8 +14,8 @@ use utoipa_axum::routes;
 use super::described::{AnyDescription, CurvesHead, MapCell, MapDescription, MapList, WindowHead};
 use super::file;
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
+use super::handing;
 use super::readers::{Maps, no_map};
-use super::visiting;
 use crate::maps::look::finite;
 use crate::maps::scan::Found;
 use crate::serve::asked::{Asked, Named, said};
@@ -28,7 +28,7 @@ where
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::with_openapi(Schemas::openapi())
-        .routes(routes!(list, visiting::visit))
+        .routes(routes!(list, handing::visit))
         .routes(routes!(description))
         .routes(routes!(window))
         .routes(routes!(curves))
