@@ -109,7 +109,7 @@ fn a_map_that_visits_is_looked_at_and_not_kept() {
     );
     open.write_all(ask.as_bytes()).unwrap();
     assert!(open.read(&mut [0; 64]).unwrap() > 0);
-    signal(serving.child.id(), "TERM");
+    signal(serving.child.id(), "-TERM");
     assert!(serving.child.wait().unwrap().success());
     assert_eq!(left(scratch.path()), 0);
     assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
