@@ -1,5 +1,6 @@
 // A friction law that is a formula: what it has for parameters, and the place of a mistake in it.
 
+import { partsOf } from "./mistake.js";
 import { quoted } from "./sweep.js";
 
 const HEAD = '[friction]\nlaw = "formula"\nmu_k = ';
@@ -20,10 +21,8 @@ export async function learn(catalogue, source, formula, signal) {
 
 /** Parts of a formula as it was asked: before, in and behind the place of a mistake. */
 export function parted({ text, span }) {
-  const bytes = new TextEncoder().encode(text);
-  const part = (from, to) => new TextDecoder().decode(bytes.subarray(from, to));
-  // Between the quotes.
-  const [start, end] = [HEAD.length + 1, bytes.length - 2];
-  const [from, to] = (span ?? [start, end]).map((at) => Math.min(end, Math.max(start, at)));
-  return [part(start, from), part(from, to), part(to, end)];
+  // Between the quotes; the head has as many bytes as letters.
+  const begun = HEAD.length + 1;
+  const place = span?.map((at) => at - begun) ?? [0, Infinity];
+  return partsOf({ text: text.slice(begun, -2), span: place });
 }
