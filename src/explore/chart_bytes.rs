@@ -141,7 +141,7 @@ fn fields(chart: &Chart, arrays: &mut Arrays) -> Vec<FieldHead> {
             array: match values {
                 Column::U16(values) => arrays.push_runs(values),
                 Column::U8(values) => arrays.push_runs(values),
-                Column::F64(values) => arrays.push(values.iter().copied()),
+                Column::F64(values) => arrays.push_runs(values),
             },
             unit,
             shown: Some(shown),

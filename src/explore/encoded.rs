@@ -11,6 +11,8 @@
 
 use serde::Serialize;
 
+use crate::meaning::alike::alike;
+
 /// Arrays begin at multiples of this.
 const ALIGNED: usize = 8;
 
@@ -81,21 +83,20 @@ impl Arrays {
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
         // A run takes one number and four bytes.
         let most = size_of_val(numbers) / (size_of::<T>() + 4);
-        let equal = || numbers.chunk_by(|a, b| a.is(*b));
-        let count = equal().take(most + 1).count();
-        if count > most {
-            return self.push(numbers.iter().copied());
-        }
-        let mut runs: Vec<(T, u32)> = Vec::with_capacity(count);
-        for run in equal() {
-            let before = runs.last().map_or(0, |(_, end)| *end);
-            runs.push((run[0], before + run.len() as u32));
+        let mut runs: Vec<(T, u32)> = Vec::new();
+        let mut begun = 0;
+        while let Some(&number) = numbers.get(begun) {
+            if runs.len() == most {
+                return self.push(numbers.iter().copied());
+            }
+            begun += alike(&numbers[begun..], T::is);
+            runs.push((number, begun as u32));
         }
         let array = self.push(runs.iter().map(|(number, _)| *number));
         self.push(runs.iter().map(|(_, end)| *end));
         Array {
             length: numbers.len(),
-            runs: Some(count),
+            runs: Some(runs.len()),
             ..array
         }
     }

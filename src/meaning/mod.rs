@@ -6,6 +6,7 @@
 //!     → [steps] the colour of each → [legend] entries → [shown] the same as plain data
 //! ```
 //!
+//! - `alike`: stretches of equal neighbours
 //! - `colour`: colours, and which class has which
 //! - `first`: the field and the axes of a picture where nobody says more
 //! - `flags`: the bits of a status in words
@@ -18,6 +19,7 @@
 //! - `shown`: all about the cells of a plane, for the page
 //! - `steps`: a scale as stretches of one colour
 
+pub(crate) mod alike;
 pub(crate) mod colour;
 pub(crate) mod first;
 pub(crate) mod flags;

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use serde::Serialize;
 
+use super::alike::alike;
 use super::colour::{HATCH, NO_VALUE, Rgb};
 use super::gap::{Gap, Rule};
 use super::legend::{self, Entry, Mark};
@@ -128,6 +129,39 @@ impl Column<'_> {
         };
         value.unwrap_or(f64::NAN)
     }
+
+    /// How many cells from one on are the same as it.
+    fn alike_from(&self, cell: usize) -> usize {
+        let length = match self {
+            Self::U8(cells) => alike(cells.get(cell..).unwrap_or_default(), |a, b| a == b),
+            Self::U16(cells) => alike(cells.get(cell..).unwrap_or_default(), |a, b| a == b),
+            Self::F64(cells) => alike(cells.get(cell..).unwrap_or_default(), |a, b| {
+                a.to_bits() == b.to_bits()
+            }),
+        };
+        // No value follows one that is not there.
+        if length == 0 { usize::MAX } else { length }
+    }
+}
+
+/// Where the stretch of equal cells ends that one lies in: each is gone through once.
+struct Stretch<'a> {
+    column: Column<'a>,
+    end: usize,
+}
+
+impl<'a> Stretch<'a> {
+    fn of(column: Column<'a>) -> Self {
+        Self { column, end: 0 }
+    }
+
+    /// The end of the stretch of a cell; they are asked for in order.
+    fn end_from(&mut self, cell: usize) -> usize {
+        if self.end <= cell {
+            self.end = cell.saturating_add(self.column.alike_from(cell));
+        }
+        self.end
+    }
 }
 
 /// The cells of a plane.
@@ -155,36 +189,32 @@ impl Cells<'_> {
         let mut there = [false; Gap::ALL.len()];
         let mut values = Vec::new();
         let mut seen = HashSet::new();
-        let mut last = None;
-        for (cell, (number, &status)) in gaps.iter_mut().zip(self.status).enumerate() {
-            if lack(cell) {
-                continue;
-            }
-            let value = self.values.value(cell);
+        let mut stretches = [Some(self.values), Some(Column::U8(self.status)), self.why]
+            .map(|column| column.map(Stretch::of));
+        let mut begun = 0;
+        while begun < gaps.len() {
+            let value = self.values.value(begun);
             let why = self.why.filter(|_| value.is_nan());
-            let why = why.map(|why| why.value(cell));
-            // Neighbours are often alike; a real number matters by being one.
-            let of_value = match classes {
-                true => value.to_bits(),
-                false => u64::from(value.is_nan()),
-            };
-            let own = (of_value, status, why.map(f64::to_bits));
-            let known = last
-                .filter(|(same, _)| *same == own)
-                .map(|(_, number)| number);
-            *number = known.unwrap_or_else(|| {
-                let gap = self.rule.gap(value, status, why);
-                gap.inspect(|gap| there[*gap as usize] = true)
-                    .map_or(0, number_of)
-            });
-            let counts = |seen: &mut HashSet<u64>| match classes {
-                true => known.is_none() && seen.insert(value.to_bits()),
-                false => !repeat(cell),
-            };
-            if *number == 0 && counts(&mut seen) {
-                values.push(value);
+            let why = why.map(|why| why.value(begun));
+            let ends = stretches.iter_mut().flatten();
+            let ended = ends.fold(gaps.len(), |end, of| end.min(of.end_from(begun)));
+            let gap = self.rule.gap(value, self.status[begun], why);
+            let told = |cell: &usize| !lack(*cell);
+            if let Some(gap) = gap {
+                for cell in (begun..ended).filter(told) {
+                    gaps[cell] = number_of(gap);
+                    there[gap as usize] = true;
+                }
+            } else if classes {
+                if (begun..ended).any(|cell| told(&cell)) && seen.insert(value.to_bits()) {
+                    values.push(value);
+                }
+            } else {
+                // A real number matters by how often it is there.
+                let counts = |cell: &usize| told(cell) && !repeat(*cell);
+                values.extend((begun..ended).filter(counts).map(|_| value));
             }
-            last = Some((own, *number));
+            begun = ended;
         }
         (self.told(&values, |gap| there[gap as usize]), gaps)
     }
