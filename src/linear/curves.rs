@@ -184,14 +184,20 @@ pub(crate) fn scan_breakpoints(
 ) -> Vec<f64> {
     let conditions: [fn(Groups) -> f64; 3] = [discriminant, frequency_product, |g| g.b];
     let at = |i: usize| p.start() + (p.end() - p.start()) * (i as f64 / samples as f64);
+    let signs = |i: usize| {
+        let groups = groups_at(at(i));
+        conditions.map(|condition| condition(groups) > 0.0)
+    };
     let mut points = Vec::new();
-    for condition in conditions {
-        let value = |p: f64| condition(groups_at(p));
-        for i in 0..samples {
-            if (value(at(i)) > 0.0) != (value(at(i + 1)) > 0.0) {
-                points.push(bisect(at(i), at(i + 1), value));
+    let mut before = signs(0);
+    for i in 0..samples {
+        let after = signs(i + 1);
+        for (k, condition) in conditions.into_iter().enumerate() {
+            if before[k] != after[k] {
+                points.push(bisect(at(i), at(i + 1), |p| condition(groups_at(p))));
             }
         }
+        before = after;
     }
     points
 }
