@@ -55,10 +55,11 @@ async function attempt(peer, act) {
 async function measureLive(browser, peers) {
   const server = await serve([newFolder()]);
   const page = await openPage(browser, server.link);
-  const about = await page.evaluate(() => {
-    const { canvas, view, plane } = window.slipmap.plane;
+  const about = await page.evaluate(async () => {
+    const { FEWER_CELLS: cells } = await import("./live.js");
+    const { canvas, view } = window.slipmap.plane;
     const [x, y] = view.map(({ from, to }) => [from, to]);
-    return { size: [canvas.clientWidth, canvas.clientHeight], x, y, cells: [plane.nx, plane.ny] };
+    return { size: [canvas.clientWidth, canvas.clientHeight], x, y, cells };
   });
   const programs = [{ title: "slipmap, live chart", turn: () => dragged(page, seconds / TURNS) }];
   const charts = peers.length ? await chartsOfSteps(page, CHARTS) : [];
@@ -104,10 +105,9 @@ printTable([
   ["load before", before],
   ["load after", load()],
   ["other work meanwhile", others()],
-  ["live charts", `${live.about.cells.join(" × ")} cells`],
+  ["live charts while a slider moves", `${live.about.cells.join(" × ")} cells`],
   ["charts with their axes", `${live.about.size.join(" × ")} pixels`],
   ...live.rows,
-  ["slipmap, charts of 200 × 150 cells in turn, from request to answer"],
   ...live.beside,
   ["slipmap, map of 10⁹ cells"],
   ...rowsOfMap(map),

@@ -11,6 +11,9 @@ export function quantile(list, part) {
 
 export const median = (list) => quantile(list, 0.5);
 
+/** The part of a list that lies below a value. */
+export const share = (list, most) => list.filter((one) => one < most).length / list.length;
+
 /** A time with as many digits as mean something. */
 export const time = (ms) => (ms < 1000 ? `${ms.toFixed(1)} ms` : `${(ms / 1000).toFixed(2)} s`);
 

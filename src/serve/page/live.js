@@ -11,8 +11,8 @@ import { Waiting } from "./waiting.js";
 
 /** Cells of a chart along x and y. */
 const CELLS = [800, 600];
-/** The same of what takes longer while something moves, without curves. */
-const FEWER_CELLS = [400, 300];
+/** The same while something moves: as many as a picture of each frame has time for. */
+export const FEWER_CELLS = [400, 300];
 /** How long nothing moves before it rests, in milliseconds. */
 const REST = 150;
 /** After this a chart is given up for a newer one, in milliseconds. */
@@ -99,8 +99,9 @@ export class Live {
 
   #want(state, fields, show, rests = false) {
     try {
-      const fewer = !rests && this.catalogue.isGeneral(state);
-      const text = this.text(state, fewer ? FEWER_CELLS : CELLS, fields, !fewer);
+      // Curves of others are walked, which takes longer.
+      const curved = rests || !this.catalogue.isGeneral(state);
+      const text = this.text(state, rests ? CELLS : FEWER_CELLS, fields, curved);
       const logs = [state.x.log, state.y.log];
       const { set } = this;
       const fixed = besides(state, this.catalogue);
