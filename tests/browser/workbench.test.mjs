@@ -206,8 +206,29 @@ test("two settings stand beside one another", async () => {
   });
   assert.match(await page.locator("#compared thead").innerText(), /A: .*0\.33[^]*B: .*0\.6/);
   assert.deepEqual(await violations(page), []);
+  // The address holds both, in another browser and for the way back.
+  await eventually(() => assert.match(page.url(), /compare=/));
+  const table = await page.locator("#compared").innerText();
+  const other = await openPage(browser, server.link);
+  const from = await other.evaluate(() => location.hash);
+  await other.evaluate((hash) => (location.hash = hash), new URL(page.url()).hash);
+  await eventually(async () => assert.equal(await other.locator("#compared").innerText(), table));
+  const both = { at: [-0.33, 4.15], of: ["alpha_v", "tau"] };
+  assert.deepEqual(await other.evaluate(() => window.slipmap.plane.other), both);
+  await eventually(() => assert.equal(new URL(other.url()).hash, new URL(page.url()).hash));
+  await other.reload();
+  await eventually(async () => assert.equal(await other.locator("#compared").innerText(), table));
+  // A preset is another setting beside the same one; back before it nothing was compared.
+  await other.locator("#preset").selectOption({ index: 2 });
+  await settled(other);
+  assert.match(await other.locator("#compared thead").innerText(), /A: .*0\.33/);
+  await other.evaluate((hash) => (location.hash = hash), from);
+  await eventually(async () => assert.ok(!(await other.locator("#compared").isVisible())));
+  assert.deepEqual(other.faults, []);
+  await other.context().close();
   await page.locator("#compare").click();
   assert.ok(!(await page.locator("#compared").isVisible()));
+  await eventually(() => assert.doesNotMatch(page.url(), /compare=/));
   assert.deepEqual(page.faults, []);
 });
 

@@ -21,7 +21,7 @@ import { Saved } from "./saved.js";
 import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
-import { addressOf, leftOut, stateOf, textsOf } from "./state.js";
+import { addressOf, comparedOf, leftOut, stateOf, textsOf } from "./state.js";
 import { Steps } from "./steps.js";
 import { pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
@@ -54,7 +54,7 @@ class Explorer {
   constructor(source, catalogue) {
     this.source = source;
     this.catalogue = catalogue;
-    this.state = stateOf(location.hash, catalogue);
+    this.state = stateOf(this.#first(location.hash), catalogue);
     this.plane = new PlaneView(element("chart"));
     this.stale = new Stale(this.plane);
     const failed = (error) => this.failed(error);
@@ -67,6 +67,7 @@ class Explorer {
         this.#say();
         this.helping.tell();
         this.following.heard();
+        this.#goOn();
       },
       lost: (error) => this.#lost(error),
       words,
@@ -90,6 +91,9 @@ class Explorer {
       unit: (dimension) => this.#unit(dimension),
       where: () => element("point-where").textContent,
       at: () => (this.state.map ? null : this.panel.at),
+      // What is no address of its own cannot be a part of one.
+      address: () => (this.state.map || leftOut(this.state) ? null : this.#address()),
+      compares: () => this.#settle(),
       failed,
     });
     this.following = new Following(this.panel, (point) => this.#glance(point));
@@ -100,10 +104,15 @@ class Explorer {
       map: (id) => this.saved.choose(id),
       failed,
     });
-    offerPresets();
+    // What is compared stays.
+    offerPresets((address) => {
+      const { compared } = this.state;
+      location.hash = address + (compared ? `&compare=${encodeURIComponent(compared)}` : "");
+    });
     if (source.jobs) this.#queue(words);
     this.#listen();
     this.#mode();
+    if (this.after) this.after.first = this.#address();
     if (source.maps) this.saved.begin();
     this.queue?.begin();
   }
@@ -217,12 +226,51 @@ class Explorer {
     return addressOf(this.state, this.catalogue);
   }
 
+  /** The address to open first: that of the setting that is compared, until it is answered. */
+  #first(hash) {
+    const compared = comparedOf(hash);
+    const known = compared === null || compared === this.state?.compared;
+    this.after = known ? null : { hash, compared };
+    return known ? hash : compared;
+  }
+
+  /** Shows what an address says, unless there is another one by then. */
+  async #open(hash) {
+    const first = this.#first(hash);
+    const { after } = this;
+    await learnAddress(this.catalogue, this.source, first);
+    if (hash !== location.hash || after !== this.after) return;
+    const { table, compared } = this.state;
+    Object.assign(this.state, stateOf(first, this.catalogue));
+    if (compared && !this.state.compared) this.helping.forget();
+    // A table too long for an address is still here.
+    if (leftOut({ ...this.state, table })) {
+      Object.assign(this.state, { table, notes: [] });
+    }
+    this.#tellNotes(this.state.notes);
+    this.#keepWhole();
+    this.controls.build();
+    this.#mode();
+    if (after) after.first = this.#address();
+  }
+
+  /** Compares with what is answered now, where an address says so, and opens the address itself. */
+  #goOn() {
+    const { after, panel, following } = this;
+    if (!after || panel.pending || this.settling || following.follows) return;
+    this.after = null;
+    // Another setting may have been set meanwhile: that stays.
+    if (this.#address() !== after.first) return;
+    this.helping.keep(after.compared);
+    this.#open(after.hash);
+  }
+
   /** Address, panel and table follow when nothing changes any more. */
   #settle() {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
       this.settling = null;
-      this.steps.put(this.#address());
+      if (!this.after) this.steps.put(this.#address());
       if (!this.state.map) this.look();
       this.#table();
     }, REST);
@@ -572,21 +620,8 @@ class Explorer {
       const open = sheet.getAttribute("aria-expanded") !== "true";
       sheet.setAttribute("aria-expanded", String(open));
     });
-    window.addEventListener("hashchange", async () => {
-      const { hash } = location;
-      if (hash === this.#address()) return;
-      await learnAddress(this.catalogue, this.source);
-      if (hash !== location.hash) return;
-      const { table } = this.state;
-      Object.assign(this.state, stateOf(location.hash, this.catalogue));
-      // A table too long for an address is still here.
-      if (leftOut({ ...this.state, table })) {
-        Object.assign(this.state, { table, notes: [] });
-      }
-      this.#tellNotes(this.state.notes);
-      this.#keepWhole();
-      this.controls.build();
-      this.#mode();
+    window.addEventListener("hashchange", () => {
+      if (location.hash !== this.#address()) this.#open(location.hash);
     });
   }
 
@@ -626,8 +661,8 @@ class Explorer {
 }
 
 /** Learns the formula and the system in the address; a mistake is told with the chart. */
-async function learnAddress(catalogue, source) {
-  const { formula, system } = textsOf(location.hash);
+async function learnAddress(catalogue, source, hash) {
+  const { formula, system } = textsOf(hash);
   if (formula !== null) await learn(catalogue, source, formula).catch(() => {});
   if (system !== null) await learnSystem(catalogue, source, system).catch(() => {});
 }
@@ -636,7 +671,7 @@ async function begin() {
   try {
     const source = await openSource();
     const catalogue = new Catalogue(await source.parameters());
-    await learnAddress(catalogue, source);
+    await learnAddress(catalogue, source, comparedOf(location.hash) ?? location.hash);
     const explorer = new Explorer(source, catalogue);
     // For tests and the curious.
     window.slipmap = explorer;

@@ -17,7 +17,8 @@ export class Helping {
    * @param {import("./plane.js").PlaneView} plane
    * @param {{shows: (ends: [number, number][], point: number[]) => void,
    *   takes: (point: number[]) => void, unit: (dimension: number[]) => string,
-   *   where: () => string, at: () => number[] | null, failed: (error: Error) => void}} done
+   *   where: () => string, at: () => number[] | null, address: () => string | null,
+   *   compares: () => void, failed: (error: Error) => void}} done
    */
   constructor(source, state, catalogue, plane, done) {
     Object.assign(this, { source, state, catalogue, plane, ...done });
@@ -33,7 +34,11 @@ export class Helping {
       this.fit();
     });
     click("best", () => this.best());
-    click("compare", () => this.#compare());
+    click("compare", () => {
+      if (this.kept) this.forget();
+      else this.keep(this.address());
+      this.compares();
+    });
   }
 
   /** What was asked for is not wanted any more, and what was found is of something else. */
@@ -136,12 +141,21 @@ export class Helping {
     element("best-told").replaceChildren(...rows);
   }
 
-  /** Keeps the answers that are shown, to stand beside the next ones. */
-  #compare() {
-    this.kept = this.kept ? null : { where: this.where(), rows: this.#rows() };
-    const at = this.kept && this.at();
+  /** Keeps the answers that are shown, to stand beside the next ones; `address` is that of them. */
+  keep(address) {
+    this.#compare({ where: this.where(), rows: this.#rows() }, address);
+  }
+
+  /** Compares nothing any more. */
+  forget() {
+    this.#compare(null, null);
+  }
+
+  #compare(kept, address) {
+    [this.kept, this.state.compared] = [kept, address];
+    const at = kept && this.at();
     this.plane.other = at && { at, of: [this.state.x.name, this.state.y.name] };
-    element("compare").setAttribute("aria-pressed", String(Boolean(this.kept)));
+    element("compare").setAttribute("aria-pressed", String(Boolean(kept)));
     this.plane.draw();
     this.tell();
   }

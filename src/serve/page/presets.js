@@ -25,14 +25,17 @@ const PRESETS = [
   ],
 ];
 
-/** Fills the list of presets; one that is chosen becomes the address. */
-export function offerPresets() {
+/**
+ * Fills the list of presets.
+ * @param {(address: string) => void} chosen
+ */
+export function offerPresets(chosen) {
   const select = element("preset");
   const options = PRESETS.map(([text], i) => make("option", { value: i }, text));
   select.append(make("option", { value: "" }, "…"), ...options);
   select.addEventListener("change", () => {
     const [, address] = PRESETS[select.value] ?? [];
     select.value = "";
-    if (address) location.hash = address;
+    if (address) chosen(address);
   });
 }

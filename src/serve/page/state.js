@@ -27,6 +27,8 @@ const START = {
   show: "n_unstable",
   point: null,
   start: null,
+  // The address of the setting that is compared.
+  compared: null,
   map: null,
 };
 
@@ -48,11 +50,16 @@ export function leftOut(state) {
   return tableText(state).length > LONGEST_TEXT ? "table" : null;
 }
 
+const saidBy = (fragment) => new URLSearchParams(fragment.replace(/^#/, ""));
+
 /** The formula and the system of an address; null where it says none. */
 export function textsOf(fragment) {
-  const said = new URLSearchParams(fragment.replace(/^#/, ""));
+  const said = saidBy(fragment);
   return { formula: said.get("formula"), system: said.get("system") };
 }
+
+/** The address of the setting that is compared with that of an address; null where none is. */
+export const comparedOf = (fragment) => saidBy(fragment).get("compare");
 
 /** The word for a parameter in an address: names that only a formula has could be other words. */
 const wordOf = (name, own) => (own.includes(name) ? `own.${name}` : name);
@@ -101,6 +108,7 @@ export function addressOf(state, catalogue) {
     if (state.point) put("at", state.point.join(","));
   }
   if (state.start) put("start", state.start.join(","));
+  if (state.compared) put("compare", state.compared);
   const plain = (text) => encodeURIComponent(text).replace(/%2C/g, ",").replace(/%3A/g, ":");
   return `#${parts.map(([key, value]) => `${key}=${plain(value)}`).join("&")}`;
 }
@@ -184,7 +192,7 @@ function readModel(state, get, catalogue) {
  * @param {import("./catalogue.js").Catalogue} catalogue
  */
 export function stateOf(fragment, catalogue) {
-  const said = new URLSearchParams(fragment.replace(/^#/, ""));
+  const said = saidBy(fragment);
   const get = (key) => said.get(key);
   const notes = [];
   const state = { ...START, x: { ...START.x }, y: { ...START.y }, values: { ...START.values } };
@@ -194,7 +202,7 @@ export function stateOf(fragment, catalogue) {
     if ([...said].length > 0) notes.push("it is none of this version of the page");
     return state;
   }
-  state.start = pairOf(get("start"));
+  [state.start, state.compared] = [pairOf(get("start")), get("compare")];
   if (/^[0-9a-f]{16}$/.test(get("map") ?? "")) {
     state.map = mapOf(said);
     return state;
