@@ -224,6 +224,21 @@ test("two settings stand beside one another", async () => {
   assert.match(await other.locator("#compared thead").innerText(), /A: .*0\.33/);
   await other.evaluate((hash) => (location.hash = hash), from);
   await eventually(async () => assert.ok(!(await other.locator("#compared").isVisible())));
+  // What is set meanwhile stays, and no map can be compared with.
+  const hash = new URL(page.url()).hash;
+  await other.evaluate((to) => {
+    location.hash = to;
+    setTimeout(() => {
+      const slider = document.getElementById("p-v0");
+      slider.value = "0.4";
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }, 20);
+  }, hash);
+  await eventually(() => assert.match(other.url(), /v0=0\.39/));
+  await settled(other);
+  assert.ok(!(await other.locator("#compared").isVisible()));
+  await other.evaluate(() => (location.hash = "#v=1&compare=v%3D1%26map%3D0123456789abcdef"));
+  await eventually(async () => assert.match(await text(other, "address-told"), /no setting of the live chart/));
   assert.deepEqual(other.faults, []);
   await other.context().close();
   await page.locator("#compare").click();

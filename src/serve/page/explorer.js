@@ -97,7 +97,7 @@ class Explorer {
       failed,
     });
     this.following = new Following(this.panel, (point) => this.#glance(point));
-    this.steps = new Steps(() => this.settling && this.steps.put(this.#address()));
+    this.steps = new Steps(() => this.settling && this.#put());
     this.dropped = new Dropped(source, {
       curve: (text) => this.#dropCurve(text),
       setting: (given, name) => this.#dropSetting(given, name),
@@ -112,7 +112,7 @@ class Explorer {
     if (source.jobs) this.#queue(words);
     this.#listen();
     this.#mode();
-    if (this.after) this.after.first = this.#address();
+    this.#isFirst();
     if (source.maps) this.saved.begin();
     this.queue?.begin();
   }
@@ -226,21 +226,26 @@ class Explorer {
     return addressOf(this.state, this.catalogue);
   }
 
+  /** Puts the address of what is shown, or of what is still to be opened. */
+  #put() {
+    this.steps.put(this.after ? this.after.hash : this.#address());
+  }
+
   /** The address to open first: that of the setting that is compared, until it is answered. */
   #first(hash) {
     const compared = comparedOf(hash);
     const known = compared === null || compared === this.state?.compared;
-    this.after = known ? null : { hash, compared };
+    this.after = known ? null : { hash, compared, table: this.state?.table };
     return known ? hash : compared;
   }
 
   /** Shows what an address says, unless there is another one by then. */
-  async #open(hash) {
+  async #open(hash, table = this.state.table) {
     const first = this.#first(hash);
     const { after } = this;
     await learnAddress(this.catalogue, this.source, first);
     if (hash !== location.hash || after !== this.after) return;
-    const { table, compared } = this.state;
+    const { compared } = this.state;
     Object.assign(this.state, stateOf(first, this.catalogue));
     if (compared && !this.state.compared) this.helping.forget();
     // A table too long for an address is still here.
@@ -251,7 +256,15 @@ class Explorer {
     this.#keepWhole();
     this.controls.build();
     this.#mode();
-    if (after) after.first = this.#address();
+    this.#isFirst();
+  }
+
+  /** What is shown now comes before what an address is about, if that says so. */
+  #isFirst() {
+    if (!this.after) return;
+    this.state.compared = null;
+    this.after.first = this.#address();
+    element("address-told").textContent = "What is compared is computed first.";
   }
 
   /** Compares with what is answered now, where an address says so, and opens the address itself. */
@@ -259,10 +272,14 @@ class Explorer {
     const { after, panel, following } = this;
     if (!after || panel.pending || this.settling || following.follows) return;
     this.after = null;
-    // Another setting may have been set meanwhile: that stays.
-    if (this.#address() !== after.first) return;
+    this.#tellNotes([]);
+    if (this.#address() !== after.first) {
+      // Another setting was set meanwhile: that stays.
+      this.#put();
+      return;
+    }
     this.helping.keep(after.compared);
-    this.#open(after.hash);
+    this.#open(after.hash, after.table);
   }
 
   /** Address, panel and table follow when nothing changes any more. */
@@ -270,7 +287,7 @@ class Explorer {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
       this.settling = null;
-      if (!this.after) this.steps.put(this.#address());
+      this.#put();
       if (!this.state.map) this.look();
       this.#table();
     }, REST);
@@ -450,7 +467,7 @@ class Explorer {
       card.style.left = `${place.x}px`;
       card.style.top = `${place.y}px`;
     }
-    if (!this.state.map) this.following.to(words ? point : null);
+    if (!this.state.map && !this.after) this.following.to(words ? point : null);
   }
 
   #view(view) {
@@ -652,7 +669,7 @@ class Explorer {
       }
     });
     click("copy-link", (event) => {
-      this.steps.put(this.#address());
+      this.#put();
       const left = leftOut(this.state);
       const words = left ? `Copied, without the ${left}` : "Copied";
       copy(location.href, event.target, words);

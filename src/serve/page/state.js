@@ -58,8 +58,12 @@ export function textsOf(fragment) {
   return { formula: said.get("formula"), system: said.get("system") };
 }
 
-/** The address of the setting that is compared with that of an address; null where none is. */
-export const comparedOf = (fragment) => saidBy(fragment).get("compare");
+/** The address, of the live chart, of what is compared with an address; null where nothing is. */
+export function comparedOf(fragment) {
+  const compared = saidBy(fragment).get("compare");
+  const said = saidBy(compared ?? "");
+  return said.get("v") === VERSION && !said.has("map") ? compared : null;
+}
 
 /** The word for a parameter in an address: names that only a formula has could be other words. */
 const wordOf = (name, own) => (own.includes(name) ? `own.${name}` : name);
@@ -202,7 +206,9 @@ export function stateOf(fragment, catalogue) {
     if ([...said].length > 0) notes.push("it is none of this version of the page");
     return state;
   }
-  [state.start, state.compared] = [pairOf(get("start")), get("compare")];
+  [state.start, state.compared] = [pairOf(get("start")), comparedOf(fragment)];
+  if (get("compare") !== null && state.compared === null)
+    notes.push("what it compares with is no setting of the live chart");
   if (/^[0-9a-f]{16}$/.test(get("map") ?? "")) {
     state.map = mapOf(said);
     return state;
