@@ -845,11 +845,10 @@ test("a start is dragged while something is looked at, and a key asks for no mor
   await page.keyboard.press("ArrowUp");
   await page.waitForTimeout(300);
   await settled(page);
-  // The list of maps is looked at from time to time.
-  assert.deepEqual(
-    questions.filter((path) => /api/.test(path) && path !== "/api/v1/maps"),
-    ["/api/v1/motion"],
-  );
+  // The list of maps is looked at from time to time, but not by a key.
+  const [asked, list] = [questions.filter((path) => /api/.test(path)), "/api/v1/maps"];
+  assert.deepEqual(asked.filter((path) => path !== list), ["/api/v1/motion"]);
+  assert.ok(asked.filter((path) => path === list).length <= 1, `${asked}`);
 });
 
 test("pictures have a ground in the dark, and a copy that fails is told", async () => {
