@@ -43,6 +43,7 @@
 //! - `spec`: a sweep as described by its file
 //! - `spec_values`: the values of a sweep file's keys
 //! - `sweep_file`: reads a sweep file, once
+//! - `system_keys`: the keys of files of systems, and limits of expressions
 //! - `system`: a system from a file: its polynomials, its own parameters, and the `System` at
 //!   values of them
 //! - `table_file`: a sweep or case file with the contents of the files that it names
@@ -94,6 +95,7 @@ pub(crate) mod spec;
 mod spec_values;
 mod sweep_file;
 pub mod system;
+pub(crate) mod system_keys;
 pub mod table_file;
 pub(crate) mod unit;
 pub mod units;

@@ -9,11 +9,12 @@ use crate::program::{Folder, expect, out};
 use pages::{Block, Page, pages};
 
 /// Pages of the guide that the program prints itself.
-const PRINTED: [&str; 6] = [
+const PRINTED: [&str; 7] = [
     "parameters",
     "laws",
     "fields",
     "sweep-files",
+    "system-files",
     "map-file",
     "command-line",
 ];

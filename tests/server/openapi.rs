@@ -372,3 +372,34 @@ fn nothing_is_left_out() {
         assert_eq!(refused.status, 405, "{line}");
     }
 }
+
+/// The guide lists every request, with its body and its query.
+#[test]
+fn the_guide_names_every_request() {
+    let page = std::fs::read_to_string("doc/guide/reference/server.md").unwrap();
+    let listed: BTreeSet<&str> = page
+        .lines()
+        .filter(|line| line.contains(" /api/v1/"))
+        .collect();
+    let folder = Folder::new();
+    let serving = Serving::submitting(&folder, &[]);
+    let described = Described::of(&serving);
+    let row = |(path, method, about): (&str, &str, &Value)| {
+        let code = |name: &str| format!("`{name}`");
+        let body = about["requestBody"]["content"].as_object().into_iter();
+        let body: Vec<String> = body.flatten().map(|(kind, _)| code(kind)).collect();
+        let query = about["parameters"].as_array().into_iter().flatten();
+        let query = query.filter(|of| of["in"] == "query");
+        let query: Vec<String> = query.map(|of| code(of["name"].as_str().unwrap())).collect();
+        let summary = about["summary"].as_str().unwrap();
+        let (method, body, query) = (method.to_uppercase(), body.join(", "), query.join(", "));
+        format!("| `{method} {path}` | {summary} | {body} | {query} |")
+    };
+    let rows: Vec<String> = described.operations().into_iter().map(row).collect();
+    let expected: BTreeSet<&str> = rows.iter().map(String::as_str).collect();
+    let listed: BTreeSet<&str> = listed
+        .into_iter()
+        .filter(|line| line.starts_with('|'))
+        .collect();
+    assert_eq!(listed, expected);
+}

@@ -17,6 +17,7 @@ use crate::setting::field::Storage;
 use crate::setting::fit_keys;
 use crate::setting::keys::{self, Key};
 use crate::setting::law_kind::{LawKind, NamedLaw};
+use crate::setting::system_keys;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::sweep::described::schema;
@@ -42,6 +43,7 @@ enum Page {
     Laws,
     Fields,
     SweepFiles,
+    SystemFiles,
     MapFile,
     CommandLine,
 }
@@ -58,6 +60,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         Page::Laws => laws(&mut page),
         Page::Fields => fields(&mut page),
         Page::SweepFiles => sweep_files(&mut page),
+        Page::SystemFiles => system_files(&mut page),
         Page::MapFile => map_file(&mut page),
         Page::CommandLine => command_line(&mut page),
     }
@@ -269,6 +272,34 @@ fn sweep_files(page: &mut String) {
     keys_of(page, &keys::CASE);
     heading(page, 2, "`[trace]`");
     keys_of(page, &keys::TRACE);
+}
+
+fn system_files(page: &mut String) {
+    heading(page, 1, "System files");
+    paragraph(
+        page,
+        "A file, or the table `system` of a sweep file, names a system with one delay by its \
+         characteristic function D(s): either P and Q, or B and A.",
+    );
+    heading(page, 2, "Keys of a system");
+    keys_of(page, &system_keys::SYSTEM);
+    heading(page, 2, "A parameter");
+    paragraph(
+        page,
+        "A number alone is its default. `--set NAME=VALUE`, `[fixed]` and axes give it a value.",
+    );
+    keys_of(page, &system_keys::OWN_PARAMETER);
+    heading(page, 2, "`speed_axis`");
+    keys_of(page, &system_keys::SPEED_AXIS);
+    heading(page, 2, "Limits");
+    paragraph(
+        page,
+        "Expressions have numbers, names of parameters, `tau`, `+ - * / ^`, parentheses and \
+         functions; divisors, exponents and arguments of functions are without s.",
+    );
+    let limits = system_keys::limits();
+    let rows = limits.map(|(of, limit)| [of.to_owned(), limit]);
+    table(page, ["of", "limit"], rows.to_vec());
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ mod tape;
 mod tests;
 mod written;
 
-pub(super) use part::{Misread, Read};
-pub(super) use reader::{VARIABLE, functions, names_in, read_number};
+pub(super) use part::{LARGEST_EXPONENT, Misread, Read};
+pub(super) use reader::{DEEPEST, LONGEST, VARIABLE, functions, names_in, read_number};
 pub(super) use tape::{Function, Op, Stacks, Tape};
 pub(super) use written::Written;

@@ -6,7 +6,7 @@ use super::tape::Op;
 use crate::linear::general::polynomial::MOST_DEGREE;
 
 /// The largest exponent of a number.
-const LARGEST_EXPONENT: f64 = 64.0;
+pub(in crate::setting) const LARGEST_EXPONENT: f64 = 64.0;
 
 /// Why an expression was not understood, and where in it.
 #[derive(Debug, Clone, PartialEq)]

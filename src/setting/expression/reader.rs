@@ -25,9 +25,9 @@ use super::tape::{Function, Op, Tape};
 use crate::text::nearest::did_you_mean;
 
 /// The longest expression, in bytes.
-const LONGEST: usize = 4096;
+pub(in crate::setting) const LONGEST: usize = 4096;
 /// The deepest nesting of parentheses and signs.
-const DEEPEST: usize = 64;
+pub(in crate::setting) const DEEPEST: usize = 64;
 
 /// The name of the variable of polynomials.
 pub(in crate::setting) const VARIABLE: &str = "s";

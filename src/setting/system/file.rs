@@ -6,19 +6,16 @@ use std::sync::Arc;
 use super::parameter::{OwnParameter, WIDEST};
 use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
 use crate::setting::expression::{VARIABLE, Written, functions};
+use crate::setting::keys::names;
 use crate::setting::map_names;
 use crate::setting::parameter::Parameter;
+use crate::setting::system_keys::{
+    LONGEST_NAME, MOST_PARAMETERS, OWN_PARAMETER, SPEED_AXIS, SYSTEM,
+};
 use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
-/// The most parameters of a system.
-const MOST_PARAMETERS: usize = 64;
-/// The longest name, in characters.
-const LONGEST_NAME: usize = 40;
-
-/// The keys of a system.
-const KEYS: [&str; 7] = ["title", "P", "Q", "B", "A", "parameters", "speed_axis"];
 const POLYNOMIALS: [&str; 4] = ["P", "Q", "B", "A"];
 
 fn polynomial(written: &Written, names: &[&str]) -> Result<Expression, SpecError> {
@@ -52,7 +49,7 @@ impl SystemModel {
         whole: &str,
         place: Option<&Range<usize>>,
     ) -> Result<Self, SpecError> {
-        let mut document = Document::of(entries, KEYS);
+        let mut document = Document::of(entries, names(&SYSTEM));
         let title = document.take("title", Entry::line).unwrap_or_default();
         let parameters = document
             .take("parameters", read_parameters)
@@ -200,7 +197,7 @@ fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
         })?;
         return Ok(own);
     }
-    let mut table = of.document(["long_name", "default", "minimum", "maximum", "unit"])?;
+    let mut table = of.document(names(&OWN_PARAMETER))?;
     let number = |entry: &Entry| entry.number_within(widest.clone());
     if let Some(name) = table.take("long_name", Entry::line) {
         name.clone_into(&mut own.long_name);
@@ -242,7 +239,7 @@ fn read_unit<'t>(entry: &Entry<'t>) -> Result<&'t str, SpecError> {
 }
 
 fn read_speed_axis(table: &Entry) -> Result<SpeedAxis, SpecError> {
-    let mut keys = table.document(["name", "period", "unit"])?;
+    let mut keys = table.document(names(&SPEED_AXIS))?;
     let name = keys.take("name", Entry::line);
     keys.take("period", read_period);
     let unit = keys.take("unit", read_speed_unit);

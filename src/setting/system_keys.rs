@@ -1,0 +1,125 @@
+//! The keys of files of systems, one row for each, and the limits of the expressions in them.
+
+use super::expression::{DEEPEST, LARGEST_EXPONENT, LONGEST, functions};
+use super::keys::{Key, key, needed};
+use super::parameter::LARGEST;
+use crate::linear::general::MOST_DEGREE;
+
+/// The most parameters of a system.
+pub(crate) const MOST_PARAMETERS: usize = 64;
+/// The longest name of a parameter, in characters.
+pub(crate) const LONGEST_NAME: usize = 40;
+
+const POLYNOMIAL: &str = "an expression in s, or a list of coefficients, the highest power first";
+
+/// The keys of a system.
+pub(crate) const SYSTEM: [Key; 7] = [
+    key(
+        "title",
+        "one line of at most 200 characters",
+        "none",
+        "stands above pictures and in answers",
+    ),
+    key(
+        "P",
+        POLYNOMIAL,
+        "none, beside B and A",
+        "what does not depend on the delay, in D = P + Q exp(-s tau)",
+    ),
+    key(
+        "Q",
+        POLYNOMIAL,
+        "none, beside B and A",
+        "what is delayed by tau",
+    ),
+    key(
+        "B",
+        POLYNOMIAL,
+        "none, beside P and Q",
+        "the open loop, in D = B (1 - memory exp(-s tau)) - A exp(-s latency) (1 - exp(-s tau))",
+    ),
+    key(
+        "A",
+        POLYNOMIAL,
+        "none, beside P and Q",
+        "the feedback of differences; its degree is below that of B",
+    ),
+    key(
+        "parameters",
+        "a table, each key the name of a parameter: its default, or a table of the keys below",
+        "none",
+        "the system's own parameters",
+    ),
+    key(
+        "speed_axis",
+        "a table",
+        "none",
+        "pictures over tau have the speed of a rotation of that period as their axis",
+    ),
+];
+
+/// The keys of a parameter of its own.
+pub(crate) const OWN_PARAMETER: [Key; 5] = [
+    key(
+        "long_name",
+        "one line",
+        "its name",
+        "what stands at axes and in maps",
+    ),
+    key(
+        "default",
+        "a number from minimum to maximum",
+        "0",
+        "its value where none is given",
+    ),
+    key("minimum", "a number", "-1e12", "its smallest value"),
+    key("maximum", "a number", "1e12", "its largest value"),
+    key(
+        "unit",
+        "1 to 20 letters, digits, spaces and - ^ / . % °",
+        "\"1\"",
+        "the unit of its numbers, which stands at axes and in maps; nothing is computed with it",
+    ),
+];
+
+/// The keys of the axis of a speed.
+pub(crate) const SPEED_AXIS: [Key; 3] = [
+    needed("name", "one line", "what stands at the axis"),
+    key("period", "\"tau\"", "\"tau\"", "whose inverse it is"),
+    key(
+        "unit",
+        "\"rpm\", \"Hz\" or \"rad/s\"",
+        "\"rpm\"",
+        "60/tau with tau in seconds, 1/tau or 2 pi/tau",
+    ),
+];
+
+/// The limits of expressions and of systems, each with what it is about.
+pub(crate) fn limits() -> [(&'static str, String); 8] {
+    let functions: Vec<&str> = functions(true).collect();
+    [
+        ("functions of an expression", functions.join(", ")),
+        ("bytes of an expression", format!("{LONGEST} at most")),
+        (
+            "signs and parentheses within one another",
+            format!("{DEEPEST} at most"),
+        ),
+        (
+            "whole exponents that are written out",
+            format!("from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}; of s from 0 on"),
+        ),
+        (
+            "degree of a polynomial in s",
+            format!("{MOST_DEGREE} at most; that of A below that of B"),
+        ),
+        (
+            "values of parameters",
+            format!("from -{LARGEST:e} to {LARGEST:e}"),
+        ),
+        ("parameters", format!("{MOST_PARAMETERS} at most")),
+        (
+            "names of parameters",
+            format!("a letter, then letters, digits and _, {LONGEST_NAME} characters at most"),
+        ),
+    ]
+}
