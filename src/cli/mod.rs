@@ -43,6 +43,7 @@
 //! - `point`: `slipmap point`
 //! - `point_args`: the arguments for a point of sliding
 //! - `point_text`: the output of `slipmap point` for people
+//! - `print_args`: the flags for a picture in print
 //! - `read_map`: `slipmap read-map`
 //! - `reference`: `slipmap reference`
 //! - `reproduce`: `slipmap reproduce`: the files that it may write, and its output
@@ -110,6 +111,7 @@ mod plot;
 mod point;
 mod point_args;
 mod point_text;
+mod print_args;
 mod read_map;
 mod reference;
 mod reproduce;

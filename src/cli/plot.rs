@@ -4,8 +4,10 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use crate::report::picture::{self, ColourMap, Picture, PictureError, PictureKind, PictureOptions};
-use crate::setting::Field;
+use crate::setting::amount::Amount;
 use crate::setting::quantity::Quantity;
+use crate::setting::units::Units;
+use crate::setting::{Field, Parameter};
 use crate::store::{MapFile, TraceFile, trace_reader};
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -13,6 +15,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use super::cell::{At, parse_at};
 use super::failure::Failure;
 use super::open::{held_field, open};
+use super::parameter_values::{amount_of, in_units};
+use super::print_args::PrintArgs;
 use super::say;
 use super::signals::Signals;
 use super::text_output::STANDARD_OUTPUT;
@@ -47,9 +51,21 @@ pub(super) struct Args {
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = SIZE, value_parser = parse_size)]
     size: (u32, u32),
-    /// The title [default: the sweep's, or what the field is where the sweep shows another]
+    #[command(flatten)]
+    print: PrintArgs,
+    /// The title, "" for none [default: the sweep's, or what the field is where the sweep shows
+    /// another]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
+    /// Of a trace, the time from which it is shown
+    #[arg(long, value_name = "T", value_parser = amount_of(Parameter::Tau))]
+    from: Option<Amount>,
+    /// Of a trace, the time until which it is shown
+    #[arg(long, value_name = "T", value_parser = amount_of(Parameter::Tau))]
+    to: Option<Amount>,
+    /// Leave out the lines below the title: what is shown, and at which values
+    #[arg(long)]
+    no_subtitle: bool,
     /// The ends of the scale of values; what lies beyond has colours of its own
     #[arg(
         long,
@@ -124,7 +140,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             Kind::Heat => PictureKind::Heat,
         }),
         size: args.size,
+        print: args.print.get(),
         title: args.title.clone(),
+        no_subtitle: args.no_subtitle,
         range: args.range,
         colour_map: args.colour_map,
         log: args.log,
@@ -133,8 +151,16 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let drawn = if trace_reader::is_trace(&args.map) {
         refuse_of_maps(args)?;
-        signals.or_end(NOT_DRAWN, || draw_trace(&args.map, &path, &options))
+        let trace = TraceFile::open(&args.map)?;
+        let options = PictureOptions {
+            time: args.time(&trace.spec.units)?,
+            ..options
+        };
+        signals.or_end(NOT_DRAWN, || {
+            picture::draw_trace_file(&trace, &path, &options)
+        })
     } else {
+        refuse_of_traces(args)?;
         let map = open(&args.map, &signals, NOT_DRAWN)?;
         let options = shown_of(&map, args, options)?;
         signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options))
@@ -171,12 +197,27 @@ fn shown_of(
     })
 }
 
-fn draw_trace(
-    trace: &Path,
-    picture: &Path,
-    options: &PictureOptions,
-) -> Result<Picture, PictureError> {
-    picture::draw_trace_file(&TraceFile::open(trace)?, picture, options)
+impl Args {
+    /// The stretch of time that is shown of a trace.
+    fn time(&self, units: &Units) -> Result<[Option<f64>; 2], Failure> {
+        let of = |flag, amount: &Option<Amount>| {
+            let value = amount.as_ref().map(|amount| in_units(flag, amount, units));
+            value.transpose()
+        };
+        Ok([of("--from", &self.from)?, of("--to", &self.to)?])
+    }
+}
+
+/// Refuses options for traces: a map has no time.
+fn refuse_of_traces(args: &Args) -> Result<(), Failure> {
+    let given = [("--from", args.from.is_some()), ("--to", args.to.is_some())];
+    match given.into_iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((flag, _)) => Err(Failure::bad_input_with_help(
+            format!("{flag} has no meaning for a map: it is about the time of a motion"),
+            "--at holds an axis at a value",
+        )),
+    }
 }
 
 /// Refuses options for maps: a motion has no fields and no axes to choose from.
@@ -205,10 +246,20 @@ fn shown(args: &Args) -> Vec<String> {
     if args.size != PictureOptions::default().size {
         words.push(format!("{}x{}", args.size.0, args.size.1));
     }
-    words.extend(args.title.iter().map(|_| "titled".to_owned()));
+    words.extend(args.print.words());
+    let time = [("from", &args.from), ("to", &args.to)].into_iter();
+    words.extend(time.filter_map(|(end, t)| Some(format!("{end}={}", t.as_ref()?))));
+    words.extend(args.title.iter().map(|title| match title.trim() {
+        "" => "untitled".to_owned(),
+        _ => "titled".to_owned(),
+    }));
     words.extend(args.range.map(|(low, high)| format!("range={low},{high}")));
     words.extend(args.colour_map.map(|map| map.name().to_owned()));
-    let flags = [(args.log, "log"), (args.no_legend, "no-legend")];
+    let flags = [
+        (args.no_subtitle, "no-subtitle"),
+        (args.log, "log"),
+        (args.no_legend, "no-legend"),
+    ];
     let set = flags.into_iter().filter(|(set, _)| *set);
     words.extend(set.map(|(_, word)| word.to_owned()));
     words
@@ -282,7 +333,27 @@ fn failure(error: PictureError, args: &Args) -> Failure {
         PictureError::OthersWork { .. } => {
             bad("", error, "-o draws elsewhere, or replaces it".into())
         }
-        PictureError::Size { .. } => Failure::bad_input(format!("--size: {error}")),
+        error => of_sheet(&error, args),
+    }
+}
+
+/// A picture that cannot be had on its sheet, or of its time.
+fn of_sheet(error: &PictureError, args: &Args) -> Failure {
+    let told = error.to_string();
+    match error {
+        PictureError::NoTime { .. } => Failure::bad_input(format!("--from, --to: {told}")),
+        PictureError::NoRoom => {
+            let help = "a smaller --font, a larger --width, --no-legend, or fewer values with --at";
+            Failure::bad_input_with_help(told, help)
+        }
+        PictureError::Size { width, height, .. }
+            if args.print.get().is_some() && (*width, *height) != args.size =>
+        {
+            let help = "--dpi makes it finer or coarser";
+            Failure::bad_input_with_help(format!("--width: {told}"), help)
+        }
+        PictureError::Size { .. } => Failure::bad_input(format!("--size: {told}")),
+        _ => Failure::failed(told),
     }
 }
 

@@ -351,3 +351,124 @@ fn the_preview_has_colours_as_color_says() {
     assert!(preview("always", Some("1")));
     assert!(!preview("never", None));
 }
+
+/// A picture is as wide as it is printed, and its text as large, in every format; a title and the
+/// lines below it can be left out.
+#[test]
+fn a_picture_fits_the_column_of_a_journal() {
+    let folder = mapped();
+    let plot = |name: &str, more: &[&str]| {
+        let args = [&["plot", "m.h5", "--width=86mm", "-o", name], more].concat();
+        expect(&folder.run(&args), 0, name);
+    };
+    let number = |file: &[u8], at: usize| u32::from_be_bytes(file[at..at + 4].try_into().unwrap());
+    plot("a.png", &["--dpi=600"]);
+    let png = bytes(&folder, "a.png");
+    assert_eq!([number(&png, 16), number(&png, 20)], [2031, 1397]);
+    let chunk = png.windows(4).position(|word| word == b"pHYs").unwrap();
+    // 600 in an inch, in a metre.
+    assert_eq!(number(&png, chunk + 4), 23_622);
+    plot("a.svg", &["--font=8pt"]);
+    let svg = text(&folder, "a.svg");
+    assert!(
+        svg.starts_with("<svg width=\"86mm\" height=\"59.08"),
+        "{svg:.80}"
+    );
+    // Texts are in tenths of a pixel, of which 300 are an inch.
+    let size = |points: f64| points / 72.0 * 3000.0;
+    let sizes = svg.split("font-size=\"").skip(1);
+    let sizes = sizes.map(|rest| rest.split_once('"').unwrap().0.parse::<f64>().unwrap());
+    let numbers = sizes.filter(|of| (of - size(8.0)).abs() < 1.0);
+    assert!(numbers.count() > 9, "{svg}");
+    let heads = |svg: &str| ["small", "dimensionless"].map(|text| svg.contains(text));
+    assert_eq!(heads(&svg), [true; 2]);
+    plot("bare.svg", &["--title", "", "--no-subtitle"]);
+    let bare = text(&folder, "bare.svg");
+    assert_eq!(heads(&bare), [false; 2]);
+    plot("a.pdf", &["--size=1000x1000"]);
+    let pdf = String::from_utf8_lossy(&bytes(&folder, "a.pdf")).into_owned();
+    let sheet = pdf
+        .split_once("/MediaBox [")
+        .unwrap()
+        .1
+        .split_once(']')
+        .unwrap()
+        .0;
+    let sides: Vec<f64> = sheet
+        .split_whitespace()
+        .map(|n| n.parse().unwrap())
+        .collect();
+    for side in &sides[2..] {
+        assert!((side - 86.0 / 25.4 * 72.0).abs() < 0.1, "{sheet}");
+    }
+}
+
+#[test]
+fn a_sheet_that_cannot_be_is_refused() {
+    let folder = mapped();
+    for (args, says) in [
+        (&["--width=86"][..], "expected a length from 10 mm to 1 m"),
+        (&["--dpi=300"], "--width <LENGTH>"),
+        (
+            &["--width=86mm", "--font=40"],
+            "there is no room for panels",
+        ),
+        (
+            &["--width=86mm", "--size=1x1"],
+            "--size: a picture of 1 × 1",
+        ),
+        (&["--width=20mm"], "--width: a picture of 236"),
+        (
+            &["--width=300mm", "--dpi=1200"],
+            "--dpi makes it finer or coarser",
+        ),
+    ] {
+        let refused = folder.run(&[&["plot", "m.h5", "-o", "b.png"], args].concat());
+        expect(&refused, 2, says);
+    }
+    let named = folder.run(&["plot", "m.h5", "--width=3.5in", "--no-subtitle"]);
+    expect(&named, 0, "m.88.9mm.no-subtitle.png");
+}
+
+/// A stretch of a trace is shown as such, and fits a column without its portrait.
+#[test]
+fn a_stretch_of_a_motion_is_shown() {
+    let case = "[fixed]\nv0 = 0.35\nalpha_v = -0.33\ntau = 4.15\n[friction]\nlaw = \"weakening\"\n\
+                mu0 = 0.5\nv_s = 0.5\n[start]\nx_dot0 = 0\n[trace]\nuntil = 60\n";
+    let folder = Folder::with(&[("c.toml", case), ("m.toml", SWEEP)]);
+    expect(&folder.run(&["simulate", "c.toml"]), 0, "c.h5");
+    let svg = |more: &[&str]| {
+        let args = [&["plot", "c.h5", "-o", "c.svg"], more].concat();
+        expect(&folder.run(&args), 0, "c.svg");
+        text(&folder, "c.svg")
+    };
+    // Numbers below the panels, of time.
+    let tells = |svg: &str, number: &str| svg.contains(&format!("\n{number}\n"));
+    let whole = svg(&[]);
+    let part = svg(&["--from", "32", "--to", "38"]);
+    assert!(tells(&whole, "60") && !tells(&whole, "33"));
+    assert!(tells(&part, "33") && !tells(&part, "60"));
+    assert!(whole.contains("elongation a") && whole.contains("even sliding at v"));
+    let column = svg(&["--width=86mm"]);
+    assert!(column.contains("elongation a") && !column.contains("even sliding at v"));
+    expect(&folder.run(&["run", "m.toml"]), 0, "m.png");
+    for (args, says) in [
+        (
+            &["c.h5", "--from=70"][..],
+            "no two samples in this stretch of time: the trace ends at t = 60",
+        ),
+        (&["c.h5", "--from=5", "--to=4"], "no two samples"),
+        (
+            &["c.h5", "--width=86mm", "--font=40"],
+            "there is no room for panels",
+        ),
+        (&["m.h5", "--from=1"], "--from has no meaning for a map"),
+    ] {
+        expect(
+            &folder.run(&[&["plot", "-o", "x.png"], args].concat()),
+            2,
+            says,
+        );
+    }
+    expect(&folder.run(&["plot", "c.h5", "--to=30"]), 0, "c.to=30.png");
+}

@@ -53,7 +53,7 @@ pub(super) fn draw(
     let families = families(map, view, curves);
     let title = choice::title(map, options);
     let title = title.unwrap_or_else(|| "Boundaries of stable sliding".into());
-    let mut body = page::head(scene, &title, &view.notes(map));
+    let mut body = page::head(scene, &title, &options.subtitle(view.notes(map)));
     let u = scene.unit();
     let degrees = Degrees::of(map, curves);
     let symbols = symbols::of_view(map, view, y)?;
@@ -71,6 +71,7 @@ pub(super) fn draw(
     let headings = vec![None];
     let words = Words::of(axis_title(x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
+    panels.check(scene)?;
     panels.draw_grid(scene);
     let Some(panel) = panels.list.first() else {
         return Ok(());

@@ -68,7 +68,7 @@ pub(super) fn named(map: &MapFile, options: &PictureOptions) -> Option<Field> {
 const LONGEST_TITLE: usize = 400;
 
 /// The title of a picture of `field` if the sweep has none.
-fn untitled(map: &MapFile, field: Field) -> &'static str {
+fn usual_title(map: &MapFile, field: Field) -> &'static str {
     // Beside critical velocities, the outcome is the end of stick-slip.
     let beside_vc = || map.fields().iter().any(|field| field.of_vc());
     if field.of_limit() {
@@ -84,8 +84,11 @@ fn untitled(map: &MapFile, field: Field) -> &'static str {
     }
 }
 
-/// The requested title, or that of the map's sweep.
+/// The requested title, empty for none, or that of the map's sweep.
 pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
+    if options.untitled() {
+        return Some(String::new());
+    }
     let of_sweep = options.title.clone().or_else(|| map.root_text(root::TITLE));
     let of_system = || Some(map.system()?.title.clone());
     let said = |title: &String| !title.trim().is_empty();
@@ -113,7 +116,7 @@ pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (St
             (capitalised(&about), [name].into_iter().chain(of).collect())
         }
         title => {
-            let title = title.unwrap_or_else(|| untitled(map, field).into());
+            let title = title.unwrap_or_else(|| usual_title(map, field).into());
             (title, vec![text::field_note(field, &about, &unit)])
         }
     }

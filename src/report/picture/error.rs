@@ -23,6 +23,15 @@ pub enum PictureError {
         /// The map or trace.
         path: PathBuf,
     },
+    /// A stretch of time without two samples.
+    #[error("there are no two samples in this stretch of time: the trace ends at t = {last}")]
+    NoTime {
+        /// When the trace ends.
+        last: f64,
+    },
+    /// Text that leaves no room for what it is about.
+    #[error("there is no room for panels beside their numbers, titles and legend")]
+    NoRoom,
     /// A width or height outside the allowed range.
     #[error("a picture of {width} × {height} pixels is outside the range: {allowed} each way")]
     Size {

@@ -44,8 +44,8 @@ impl Picture {
     ) -> Result<Self, PictureError> {
         let bytes = match format {
             Format::Png => png(scene, &origin),
-            Format::Svg => render::svg(scene),
-            Format::Pdf => pdf::of_svg(&render::svg(scene)?),
+            Format::Svg => render::svg(scene, scene.print),
+            Format::Pdf => pdf::of_svg(&render::svg(scene, None)?, scene.print),
         }?;
         Ok(Self {
             bytes,

@@ -7,6 +7,9 @@ use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
 /// The families in CSS: where an SVG picture is opened without DejaVu Sans, a similar font is used.
 const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
+/// Height from ascent to descent, in ems. Sizes of a scene count this height, as bitmaps do; SVG
+/// and print count the em.
+pub(super) const HEIGHT: f64 = 1.164;
 /// The size at which texts are measured: widths come in whole pixels.
 const MEASURED_AT: f64 = 1000.0;
 /// Width of a letter relative to the font size, if the font cannot be used.

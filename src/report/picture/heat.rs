@@ -32,6 +32,23 @@ const GAP: f64 = 34.0;
 /// The most cells per axis that are read to learn the stability where no curve lies.
 const MOST_TOLD: usize = 600;
 
+/// The title and the lines below it.
+fn head(
+    map: &MapFile,
+    view: &View,
+    field: Field,
+    found: &Curves,
+    options: &PictureOptions,
+) -> (String, Vec<Rich>) {
+    let (title, mut notes) = choice::head(map, field, options);
+    notes.extend(view.notes(map));
+    let mut notes = options.subtitle(notes);
+    // What lacks is told in any case.
+    let missing = |why| Rich::plain(&format!("boundaries are missing: {why}"));
+    notes.extend(found.missing.map(missing));
+    (title, notes)
+}
+
 /// Draws a heat map of `field`, with those of `curves` that bound the stable region. The
 /// number beside the options limits the cells each way in all panels together.
 pub(super) fn draw(
@@ -45,10 +62,7 @@ pub(super) fn draw(
 ) -> Result<(), PictureError> {
     let curves = &found.list;
     let unit = map.field_unit(field);
-    let (title, mut notes) = choice::head(map, field, options);
-    notes.extend(view.notes(map));
-    let missing = |why| Rich::plain(&format!("boundaries are missing: {why}"));
-    notes.extend(found.missing.map(missing));
+    let (title, notes) = head(map, view, field, found, options);
     let mut body = page::head(scene, &title, &notes);
     let u = scene.unit();
     let across = (view.panels.len() as f64).sqrt().ceil() as usize;
@@ -73,6 +87,7 @@ pub(super) fn draw(
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
     let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
+    panels.check(scene)?;
     let turned = found.turned;
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {

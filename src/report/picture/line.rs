@@ -64,7 +64,7 @@ pub(super) fn draw(
         notes.clear();
     }
     notes.extend(view.notes(map));
-    let mut body = page::head(scene, &title, &notes);
+    let mut body = page::head(scene, &title, &options.subtitle(notes));
     let axis = &map.axes()[view.x];
     let scales = (
         speed::scale(map, axis),
@@ -79,7 +79,7 @@ pub(super) fn draw(
         x: scales.0,
         y: scales.1,
     };
-    let entries = draw_off_scale(&anywhere, &lines, asked, &mut Scene::new(scene.size));
+    let entries = draw_off_scale(&anywhere, &lines, asked, &mut scene.like());
     legend.entries.extend(entries);
     let column = match options.no_legend {
         true => None,
@@ -92,6 +92,7 @@ pub(super) fn draw(
         names: field.kinds().unwrap_or_default(),
     };
     let panels = Panels::new(scene, body, scales, words);
+    panels.check(scene)?;
     let Some(panel) = panels.list.first() else {
         return Ok(());
     };

@@ -14,7 +14,7 @@
 //! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
 //!   them, and free places on curves
 //! - `fit`: a friction law among the points to which it was fitted
-//! - `trace`, `stack`: a motion over time, in panels above one another
+//! - `trace`, `stack`, `span`: a motion over time, in panels above one another, or a part of it
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
@@ -27,10 +27,12 @@
 //! - `line`: fields along the only remaining axis: one at several values of another axis, or
 //!   several together
 //! - `pdf`: from SVG to PDF; the only file that imports svg2pdf
+//! - `print`: how wide, how fine, and how large in print
 //! - `rectangles`: joins cells into few rectangles
 //! - `render`: from a scene to the bytes of a PNG or SVG file
 //! - `scene`: the contents of a picture, in pixels from its upper left corner, independent of
 //!   rendering
+//! - `thinned`: curves of many points, reduced to what is seen of them
 //! - `traced`: the curves of the planes that are shown, of the map or traced from its sweep
 //! - `told_apart`: tests: colours under three kinds of colour blindness
 //! - `view`: the part of a map that is shown
@@ -60,16 +62,19 @@ mod page;
 mod paint;
 mod panels;
 mod pdf;
+mod print;
 mod rectangles;
 mod render;
 mod roots;
 mod scene;
+mod span;
 mod speed;
 mod stable_area;
 mod stable_line;
 mod stack;
 mod symbols;
 mod text;
+mod thinned;
 mod trace;
 mod traced;
 mod value_scale;
@@ -94,6 +99,7 @@ pub use file::{Picture, is_name, named_in};
 #[cfg(feature = "fit")]
 pub use fit::FitPicture;
 pub use options::{Named, PictureKind, PictureOptions};
+pub use print::Print;
 pub use roots::PointPicture;
 use scene::Scene;
 use traced::Curves;
@@ -118,8 +124,8 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 }
 
 /// Draws the trace of the file `of` for the file `path`, as [`draw`] does a map: velocities,
-/// elongation and the controlled quantity over time, and the velocity over the elongation. Only the
-/// size and the title among the options are used; the default title is the case's.
+/// elongation and the controlled quantity over time, and the velocity over the elongation. Of the
+/// options those about the sheet and its title are used; the default title is the case's.
 ///
 /// # Errors
 /// When the name of the file is not that of a picture, or options have no meaning for a trace.
@@ -133,9 +139,8 @@ pub fn draw_trace(
     let format = Format::of(path)?;
     options.check()?;
     options.about_values("a trace has no scale of values")?;
-    let mut scene = Scene::new(options.size);
-    let title = options.title.as_deref().unwrap_or(&spec.title);
-    trace::draw(spec, title, trace, &mut scene);
+    let mut scene = Scene::asked(options);
+    trace::draw(spec, options, trace, &mut scene)?;
     let origin = Origin {
         of: named(of) + " motion",
         named: "",
@@ -213,7 +218,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     let choice = Choice::of(map, options)?;
     let field = choice.field;
     let view = View::new(map, &options.at)?;
-    let mut scene = Scene::new(options.size);
+    let mut scene = Scene::asked(options);
     let Some(y) = view.y else {
         if options.kind == Some(PictureKind::Boundaries) {
             return Err(no_curves("only one axis is left to draw along"));

@@ -3,6 +3,8 @@
 use std::ops::RangeInclusive;
 
 use super::error::PictureError;
+use super::print::Print;
+use super::text::Rich;
 use crate::meaning::gradient::ColourMap;
 use crate::setting::Field;
 use crate::setting::quantity::Quantity;
@@ -55,9 +57,16 @@ pub struct PictureOptions {
     pub at: Vec<(Quantity, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
-    /// The title. By default the sweep's, for pictures of the field that it shows, else the meaning
-    /// of the field.
+    /// How it is printed, in the shape of `size`, which says nothing else then. By default it has
+    /// as many pixels as `size` says, and its text grows with them.
+    pub print: Option<Print>,
+    /// The title; none if it is empty. By default the sweep's, for pictures of the field that it
+    /// shows, else the meaning of the field.
     pub title: Option<String>,
+    /// When a motion begins and ends that is shown; by default all of it.
+    pub time: [Option<f64>; 2],
+    /// Whether the lines below the title are left out: what is shown, and at which values.
+    pub no_subtitle: bool,
     /// The ends (low, high) of the scale of values, in the units of the map. By default they follow
     /// from the values. Values beyond them have their own colours.
     pub range: Option<(f64, f64)>,
@@ -77,7 +86,10 @@ impl Default for PictureOptions {
             kind: None,
             at: Vec::new(),
             size: (1600, 1100),
+            print: None,
             title: None,
+            time: [None, None],
+            no_subtitle: false,
             range: None,
             colour_map: None,
             log: false,
@@ -89,13 +101,14 @@ impl Default for PictureOptions {
 impl PictureOptions {
     /// Refuses options that suit no map.
     pub(super) fn check(&self) -> Result<(), PictureError> {
-        let (width, height) = self.size;
-        if !(SIZES.contains(&width) && SIZES.contains(&height)) {
-            return Err(PictureError::Size {
-                width,
-                height,
-                allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
-            });
+        for (width, height) in [self.size, self.pixels()] {
+            if !(SIZES.contains(&width) && SIZES.contains(&height)) {
+                return Err(PictureError::Size {
+                    width,
+                    height,
+                    allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
+                });
+            }
         }
         match self.range {
             Some((low, high)) if !(low.is_finite() && high.is_finite() && low < high) => {
@@ -117,6 +130,24 @@ impl PictureOptions {
             Some((_, option)) => Err(PictureError::NotForThis { option, why }),
             None => Ok(()),
         }
+    }
+
+    /// Width and height in pixels.
+    pub(super) fn pixels(&self) -> (u32, u32) {
+        self.print
+            .map_or(self.size, |print| print.pixels(self.size))
+    }
+
+    /// Whether no title is wanted.
+    pub(super) fn untitled(&self) -> bool {
+        self.title
+            .as_deref()
+            .is_some_and(|title| title.trim().is_empty())
+    }
+
+    /// The lines below a title, where they are wanted.
+    pub(super) fn subtitle(&self, notes: Vec<Rich>) -> Vec<Rich> {
+        if self.no_subtitle { Vec::new() } else { notes }
     }
 
     /// The requested part of a map, apart from its style, in words.

@@ -1,5 +1,6 @@
 //! The page: title, notes, and the remaining area.
 
+pub(super) use super::print::SMALL;
 use super::scene::{Align, Scene};
 use super::text::Rich;
 use crate::meaning::colour::{INK, SOFT_INK};
@@ -8,8 +9,6 @@ use crate::meaning::colour::{INK, SOFT_INK};
 pub(super) const TITLE: f64 = 34.0;
 /// Axis titles.
 pub(super) const LABEL: f64 = 29.0;
-/// Numbers and notes.
-pub(super) const SMALL: f64 = 26.0;
 /// Space at the edges of the sheet.
 const EDGE: f64 = 34.0;
 const TITLE_LINES: usize = 2;

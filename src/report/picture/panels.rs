@@ -1,5 +1,6 @@
 //! Panels side by side with common axes: one for a single plane, several for small multiples.
 
+use super::error::PictureError;
 use super::page::{Area, LABEL, SMALL};
 use super::scene::{Align, Point, Scene};
 use super::text::Rich;
@@ -128,6 +129,19 @@ impl Words {
     }
 }
 
+/// The least side of a panel, relative to the font of numbers.
+const LEAST: f64 = 2.0;
+
+/// Refuses panels that are smaller than a few letters, or turned over.
+pub(super) fn roomy(panels: &[Panel], scene: &Scene) -> Result<(), PictureError> {
+    let least = LEAST * SMALL * scene.unit();
+    let room = |panel: &Panel| panel.area.width() >= least && panel.area.height() >= least;
+    match panels.iter().all(room) {
+        true => Ok(()),
+        false => Err(PictureError::NoRoom),
+    }
+}
+
 /// Panels in rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Panels {
@@ -190,6 +204,11 @@ impl Panels {
             words,
             outside,
         }
+    }
+
+    /// Refuses panels that have no room.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), PictureError> {
+        roomy(&self.list, scene)
     }
 
     /// Draws grid lines, before the contents.

@@ -7,17 +7,16 @@ use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
 
 use super::error::PictureError;
 use super::font;
+use super::print::Print;
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
 use crate::meaning::colour::Rgb;
+use crate::report::numbers::rounded;
 
 /// Bitmaps are drawn larger by this factor and averaged, for smooth edges.
 const OVERSAMPLING: u32 = 3;
 /// Units of an SVG picture per pixel, since the backend uses whole units.
 const SVG_UNITS: u32 = 10;
-/// Height of the font from ascent to descent, in ems. The bitmap backend counts this height, SVG
-/// the em.
-const DEJAVU_HEIGHT: f64 = 1.164;
 /// The factor by which the SVG backend divides font sizes.
 const SVG_FONT_FACTOR: f64 = 1.24;
 
@@ -44,6 +43,11 @@ pub(super) fn png(scene: &Scene, texts: &[(&str, &str)]) -> Result<Vec<u8>, Pict
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Default);
+    encoder.set_pixel_dims(scene.print.map(|print| png::PixelDimensions {
+        xppu: print.per_metre(),
+        yppu: print.per_metre(),
+        unit: png::Unit::Meter,
+    }));
     for (keyword, text) in texts {
         let added = encoder.add_itxt_chunk((*keyword).into(), (*text).into());
         added.map_err(refused)?;
@@ -54,8 +58,12 @@ pub(super) fn png(scene: &Scene, texts: &[(&str, &str)]) -> Result<Vec<u8>, Pict
     Ok(bytes)
 }
 
-/// The picture as an SVG file.
-pub(super) fn svg(scene: &Scene) -> Result<Vec<u8>, PictureError> {
+/// The picture as an SVG file, whose sides are told in pixels, or in millimetres of print.
+pub(super) fn svg(scene: &Scene, print: Option<Print>) -> Result<Vec<u8>, PictureError> {
+    let sides = match print.map(|print| print.millimetres(scene.size)) {
+        Some(sides) => sides.map(|side| format!("{}mm", rounded(side, 5))),
+        None => [scene.size.0, scene.size.1].map(|side| side.to_string()),
+    };
     let (width, height) = (scene.size.0 * SVG_UNITS, scene.size.1 * SVG_UNITS);
     let mut text = String::new();
     {
@@ -74,7 +82,7 @@ pub(super) fn svg(scene: &Scene) -> Result<Vec<u8>, PictureError> {
         "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" \
         stroke-linejoin=\"round\" \
          stroke-linecap=\"round\" xmlns=\"http://www.w3.org/2000/svg\">\n",
-        scene.size.0, scene.size.1,
+        sides[0], sides[1],
     );
     Ok((head + body).into_bytes())
 }
@@ -274,8 +282,8 @@ impl<B: DrawingBackend> Pen<B> {
             (size, 0.5 * size)
         } else {
             (
-                size * SVG_FONT_FACTOR / DEJAVU_HEIGHT,
-                0.76 * size / DEJAVU_HEIGHT,
+                size * SVG_FONT_FACTOR / font::HEIGHT,
+                0.76 * size / font::HEIGHT,
             )
         };
         let (x, y) = (at.0 * self.units, at.1 * self.units);
@@ -378,7 +386,7 @@ mod tests {
 
     #[test]
     fn svg_is_one_document_with_merged_cells() {
-        let text = String::from_utf8(svg(&scene()).unwrap()).unwrap();
+        let text = String::from_utf8(svg(&scene(), None).unwrap()).unwrap();
         assert!(text.starts_with("<svg width=\"40\" height=\"30\" viewBox=\"0 0 400 300\""));
         assert!(text.trim_end().ends_with("</svg>"));
         assert_eq!(text.matches("<rect").count(), 1 + 3);

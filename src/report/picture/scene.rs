@@ -1,5 +1,7 @@
 //! The contents of a picture, in pixels from its upper left corner, independent of rendering.
 
+use super::options::PictureOptions;
+use super::print::Print;
 use super::text::Rich;
 use crate::meaning::colour::{PAPER, Rgb};
 
@@ -78,6 +80,8 @@ pub(super) enum Align {
 pub(super) struct Scene {
     /// Width and height in pixels.
     pub size: (u32, u32),
+    /// How it is printed, if that is known.
+    pub print: Option<Print>,
     /// The drawn elements.
     pub marks: Vec<Mark>,
 }
@@ -87,12 +91,33 @@ impl Scene {
     pub(super) fn new(size: (u32, u32)) -> Self {
         Self {
             size,
+            print: None,
             marks: Vec::new(),
         }
     }
 
-    /// The unit of this picture: 1 for 1600 × 1100 pixels. All fonts and gaps scale with it.
+    /// An empty, white picture of the size that is asked for.
+    pub(super) fn asked(options: &PictureOptions) -> Self {
+        Self {
+            print: options.print,
+            ..Self::new(options.pixels())
+        }
+    }
+
+    /// An empty, white picture of the same size.
+    pub(super) fn like(&self) -> Self {
+        Self {
+            print: self.print,
+            ..Self::new(self.size)
+        }
+    }
+
+    /// The unit of this picture: 1 for 1600 × 1100 pixels, or by the size of text in print. All
+    /// fonts and gaps scale with it.
     pub(super) fn unit(&self) -> f64 {
+        if let Some(print) = self.print {
+            return print.unit();
+        }
         (f64::from(self.size.0) / 1600.0).min(f64::from(self.size.1) / 1100.0)
     }
 

@@ -1,14 +1,18 @@
 //! A motion over time, and its velocity over the elongation.
 
+use super::error::PictureError;
 use super::legend::{Legend, Swatch};
+use super::options::PictureOptions;
 use super::page::{self, Area};
-use super::panels::Panel;
-use super::scene::{Point, Scene};
+use super::panels::{Panel, roomy};
+use super::scene::Scene;
+use super::span::Span;
 use super::stack::{Row, Stack};
 use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
+use super::thinned::{apart, by_columns};
 use crate::answers::Trace;
-use crate::answers::trace::{Sample, TraceEvent};
+use crate::answers::trace::Sample;
 use crate::meaning::colour::{self, Rgb, SOFT_INK, STUCK, UNSTABLE};
 use crate::meaning::scale::Scale;
 use crate::setting::{CaseSpec, Parameter};
@@ -23,6 +27,8 @@ const DASH: (f64, f64) = (9.0, 7.0);
 const SETTLED: (f64, f64) = (1.0, 5.0);
 /// Share of the width for the panels over time.
 const OVER_TIME: f64 = 0.655;
+/// From so many units on there is room for the velocity over the elongation.
+const WIDE: f64 = 1200.0;
 /// The most points of the phase portrait, counted from the end: older ones would be covered.
 const MOST_PORTRAIT: usize = 30_000;
 
@@ -42,14 +48,43 @@ struct Strip {
     curves: Vec<Curve>,
 }
 
-/// Draws a trace of a case under a title.
-pub(super) fn draw(spec: &CaseSpec, title: &str, trace: &Trace, scene: &mut Scene) {
-    let title = match title.trim() {
+/// Draws a trace of a case.
+pub(super) fn draw(
+    spec: &CaseSpec,
+    options: &PictureOptions,
+    trace: &Trace,
+    scene: &mut Scene,
+) -> Result<(), PictureError> {
+    let span = Span::of(trace, options.time)?;
+    let title = match spec.title.trim() {
         "" => "Motion of the block",
         title => title,
     };
-    let body = page::head(scene, title, &notes(spec, trace));
+    let title = match options.untitled() {
+        true => "",
+        false => options.title.as_deref().unwrap_or(title),
+    };
+    let notes = options.subtitle(notes(spec, trace, &span));
+    let mut body = page::head(scene, title, &notes);
     let u = scene.unit();
+    let strips = strips(spec);
+    let settled = Some(settled(spec, trace)).filter(|t| span.holds(*t));
+    let wide = body.width() >= WIDE * u;
+    let mut legend = Legend::default();
+    if !options.no_legend {
+        legend.entries = entries(&span, settled, &strips);
+        if wide {
+            let portrait = [sliding(spec, span.samples)];
+            legend.entries.extend(symbols::entries(&portrait));
+        }
+    }
+    if !wide {
+        let width = legend.width(u);
+        let column = body.cut_right(width, if width > 0.0 { 24.0 * u } else { 0.0 });
+        draw_strips(spec, (&span, settled), &strips, body, scene)?;
+        legend.draw(scene, column);
+        return Ok(());
+    }
     let middle = body.left + OVER_TIME * body.width();
     let over_time = Area {
         right: middle - 10.0 * u,
@@ -59,24 +94,23 @@ pub(super) fn draw(spec: &CaseSpec, title: &str, trace: &Trace, scene: &mut Scen
         left: middle + 14.0 * u,
         ..body
     };
-    let strips = strips(spec);
-    draw_strips(spec, trace, &strips, over_time, scene);
-    let legend = legend(spec, trace, &strips);
+    draw_strips(spec, (&span, settled), &strips, over_time, scene)?;
     let portrait = Area {
         bottom: body.bottom - legend.height(u) - 20.0 * u,
         ..beside
     };
-    draw_portrait(spec, &trace.samples, portrait, scene);
+    draw_portrait(spec, span.samples, portrait, scene);
     let column = Area {
         left: beside.left + 60.0 * u,
         top: portrait.bottom + 20.0 * u,
         ..beside
     };
     legend.draw(scene, column);
+    Ok(())
 }
 
 /// The setting, and the outcome of the motion.
-fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
+fn notes(spec: &CaseSpec, trace: &Trace, span: &Span) -> Vec<Rich> {
     let (setting, units) = (&spec.setting, &spec.units);
     let mut notes = vec![];
     for parameter in [
@@ -95,7 +129,7 @@ fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
     let became = match summary.outcome {
         Outcome::Sliding => {
             let settled = settled(spec, trace);
-            let later = match settled > end(trace) {
+            let later = match settled > span.end() {
                 true => ", later than is shown",
                 false => "",
             };
@@ -118,11 +152,6 @@ fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
     let controlled = spec.setting.control().act();
     let switched_on = Some(spec.case.switch_on).filter(|t| controlled && t.is_finite());
     switched_on.unwrap_or(0.0) + trace.summary.settle_time
-}
-
-/// The time at which the trace ends.
-fn end(trace: &Trace) -> f64 {
-    trace.samples.last().map_or(0.0, |s| s.t)
 }
 
 /// The panels over time. The last one shows the controlled quantity, if there is one.
@@ -160,30 +189,33 @@ fn strips(spec: &CaseSpec) -> Vec<Strip> {
     strips
 }
 
-fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, scene: &mut Scene) {
-    let samples = &trace.samples;
+fn draw_strips(
+    spec: &CaseSpec,
+    (span, settled): (&Span, Option<f64>),
+    strips: &[Strip],
+    area: Area,
+    scene: &mut Scene,
+) -> Result<(), PictureError> {
+    let samples = span.samples;
     let u = scene.unit();
     let row = |strip: &Strip| Row {
         scale: scale(strip.curves.iter().map(|c| c.of), samples),
         title: Rich::plain(&strip.title),
     };
-    let end = end(trace);
-    // A lift-off ends the trace; its mark needs room beside the frame.
-    let room = if lifts_off(trace) { 1.03 } else { 1.0 };
-    let x = Scale::linear(0.0, if end > 0.0 { room * end } else { 1.0 });
     let below = format!("time t{}", suffix(&spec.units.time(), "  (", ")"));
     let rows = strips.iter().map(row).collect();
-    let stack = Stack::new(scene, area, x, Rich::plain(&below), rows);
+    let stack = Stack::new(scene, area, span.scale(), Rich::plain(&below), rows);
+    roomy(&stack.panels, scene)?;
     for panel in &stack.panels {
-        shade_sticks(panel, trace, scene);
+        shade_sticks(panel, span, scene);
     }
     stack.draw_grid(scene);
     for (panel, strip) in stack.panels.iter().zip(strips) {
-        for event in marked(trace) {
+        for event in span.marked() {
             mark(panel, event.t, mark_colour(event.kind), DASH, scene);
         }
-        if settled(spec, trace) <= end {
-            mark(panel, settled(spec, trace), SOFT_INK, SETTLED, scene);
+        if let Some(settled) = settled {
+            mark(panel, settled, SOFT_INK, SETTLED, scene);
         }
         for curve in &strip.curves {
             let points = samples.iter().map(|s| panel.at(s.t, (curve.of)(s)));
@@ -191,17 +223,7 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
         }
     }
     stack.draw_axes(scene);
-}
-
-/// The events with a mark of their own that lie within the picture.
-fn marked(trace: &Trace) -> impl Iterator<Item = &TraceEvent> {
-    let end = end(trace);
-    let events = trace.events.iter().filter(move |e| e.t <= end);
-    events.filter(|e| matches!(e.kind, Event::SwitchOn | Event::LiftOff))
-}
-
-fn lifts_off(trace: &Trace) -> bool {
-    marked(trace).any(|event| event.kind == Event::LiftOff)
+    Ok(())
 }
 
 fn mark(panel: &Panel, t: f64, colour: Rgb, dash: (f64, f64), scene: &mut Scene) {
@@ -217,9 +239,9 @@ fn mark_colour(kind: Event) -> Rgb {
     }
 }
 
-fn shade_sticks(panel: &Panel, trace: &Trace, scene: &mut Scene) {
+fn shade_sticks(panel: &Panel, span: &Span, scene: &mut Scene) {
     let area = panel.area;
-    for (from, to) in trace.sticks() {
+    for (from, to) in span.sticks() {
         let (left, right) = (panel.across(from), panel.across(to));
         scene.rect((left, area.top), (right, area.bottom), STUCK);
     }
@@ -269,63 +291,17 @@ fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
     Scale::linear(low - room, high + room)
 }
 
-/// A curve with increasing x, reduced to the visible points: the first, the extremes and the last
-/// of each column of pixels.
-fn by_columns(points: impl Iterator<Item = Point>) -> Vec<Point> {
-    let mut kept = Vec::new();
-    let mut column: Vec<Point> = Vec::new();
-    for point in points {
-        let new = column
-            .first()
-            .is_some_and(|p| p.0.floor() != point.0.floor());
-        if new {
-            close_column(&mut column, &mut kept);
-        }
-        column.push(point);
-    }
-    close_column(&mut column, &mut kept);
-    kept
-}
-
-fn close_column(column: &mut Vec<Point>, kept: &mut Vec<Point>) {
-    if column.len() <= 4 {
-        kept.append(column);
-        return;
-    }
-    let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
-    let top = (0..column.len()).min_by(by_height).unwrap_or(0);
-    let bottom = (0..column.len()).max_by(by_height).unwrap_or(0);
-    let mut places = [0, top.min(bottom), top.max(bottom), column.len() - 1].to_vec();
-    places.dedup();
-    kept.extend(places.into_iter().map(|i| column[i]));
-    column.clear();
-}
-
-/// Points at least a third of a pixel apart, and the last one.
-fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
-    let mut kept: Vec<Point> = Vec::new();
-    let mut last = None;
-    for point in points {
-        let near = |p: &Point| (p.0 - point.0).hypot(p.1 - point.1) < 1.0 / 3.0;
-        last = kept.last().is_some_and(near).then_some(point);
-        if last.is_none() {
-            kept.push(point);
-        }
-    }
-    kept.extend(last);
-    kept
-}
-
-fn legend(spec: &CaseSpec, trace: &Trace, strips: &[Strip]) -> Legend {
+/// What stands in the legend of the panels over time.
+fn entries(span: &Span, settled: Option<f64>, strips: &[Strip]) -> Vec<(Swatch, Rich)> {
     let curves = strips.iter().flat_map(|strip| &strip.curves).rev();
     let named = curves.filter(|curve| !curve.name.is_empty());
     let mut entries: Vec<(Swatch, Rich)> = named
         .map(|c| (Swatch::Line(c.colour, WIDTH, None), Rich::plain(c.name)))
         .collect();
-    if !trace.sticks().is_empty() {
+    if !span.sticks().is_empty() {
         entries.push((Swatch::Box(STUCK), Rich::plain("the block sticks")));
     }
-    for event in marked(trace) {
+    for event in span.marked() {
         let text = match event.kind {
             Event::LiftOff => "lift-off",
             _ => "control switched on",
@@ -333,16 +309,12 @@ fn legend(spec: &CaseSpec, trace: &Trace, strips: &[Strip]) -> Legend {
         let swatch = Swatch::Dashed(mark_colour(event.kind), MARK_WIDTH, DASH);
         entries.push((swatch, Rich::plain(text)));
     }
-    if settled(spec, trace) <= end(trace) {
+    if settled.is_some() {
         let swatch = Swatch::Dashed(SOFT_INK, MARK_WIDTH, SETTLED);
         let words = Rich::default().and_formula("from here within 1 % of v_0");
         entries.push((swatch, words));
     }
-    entries.extend(symbols::entries(&[sliding(spec, &trace.samples)]));
-    Legend {
-        heading: Vec::new(),
-        entries,
-    }
+    entries
 }
 
 /// The place of steady sliding in the portrait, if it lies inside.
@@ -357,22 +329,6 @@ fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thinning_keeps_ends_and_extremes() {
-        let points = (0..=10_000).map(|i| {
-            let x = f64::from(i) / 1000.0;
-            (x, (f64::from(i) * 0.37).sin() * 40.0)
-        });
-        let all: Vec<Point> = points.collect();
-        let kept = by_columns(all.iter().copied());
-        assert!(kept.len() <= 44 && kept.windows(2).all(|w| w[0].0 < w[1].0));
-        assert_eq!((kept[0], kept.last()), (all[0], all.last()));
-        let highest = |points: &[Point]| points.iter().map(|p| p.1).fold(0.0, f64::max);
-        assert_eq!(highest(&kept), highest(&all));
-        let kept = apart((0..1000).map(|i| (f64::from(i) / 1000.0, 0.0)));
-        assert!(kept.len() <= 5 && kept.last() == Some(&(0.999, 0.0)));
-    }
 
     #[test]
     fn what_does_not_vary_has_a_scale() {
