@@ -1,11 +1,12 @@
 //! `slipmap basin`: the share of starts from which control ends in sliding.
 
 use std::convert::Infallible;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::explore::basin::{BasinShare, Followed, no_law};
-use crate::report::numbers::{grouped, rounded, unit_behind};
+use crate::report::numbers::{bound, grouped, unit_behind, with_error};
 use crate::report::table::write_starts;
 use crate::setting::amount::Amount;
 use crate::setting::basin::{Basin, Over};
@@ -19,14 +20,15 @@ use clap::ValueEnum;
 
 use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
+use super::digits::{Digits, DigitsArgs};
 use super::failure::Failure;
 use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
-use super::output::warn_beyond_curve;
+use super::output::{tell_dimensionless, warn_beyond_curve};
 use super::parameter_values::{amount_of, in_units};
 use super::parameters::ParameterArgs;
 use super::run::{default_threads, parse_threads};
-use super::say::{self, ForPeople, Rows};
+use super::say::{self, ForPeople};
 use super::setting::SettingArgs;
 use super::signals::Signals;
 use super::text_output::{To, is_csv};
@@ -85,6 +87,8 @@ pub(super) struct Args {
     /// Threads to compute on [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
+    #[command(flatten)]
+    digits: DigitsArgs,
     /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
@@ -146,8 +150,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         return json::print(&question.inputs(&share), &share);
     }
     let (setting, units) = (&question.setting, &question.units);
+    let digits = args.digits.get();
+    say::result(sentence(&share))?;
     inputs_line::print(&mut ForPeople::begin(), setting, units, &[])?;
-    tell(&share, units, args.output.as_deref())
+    tell(&share, (units, digits), args.output.as_deref())
 }
 
 impl Args {
@@ -305,44 +311,67 @@ impl Question {
     }
 }
 
-fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), Failure> {
-    let mut rows = Rows::begin();
+/// The answer as a sentence.
+fn sentence(share: &BasinShare) -> String {
+    let (Some(least), Some([low, high])) = (finite(share.basin_share), share.interval) else {
+        return "there is no share: there is no uncontrolled stick-slip to switch on in".into();
+    };
+    if share.linearly_unstable {
+        return "control ends in sliding from no start: sliding is linearly unstable".into();
+    }
+    let of = |share: f64, up: bool| bound(100.0 * share, 3, up);
+    let (low, high) = (of(low, false), of(high, true));
+    let sure = format!("from {low} to {high} % of all, with 95 % confidence");
+    let most = finite(share.basin_share_upper).filter(|most| *most > least);
+    let from = match (least, most) {
+        (_, Some(most)) => format!(
+            "from at least {} % and at most {} % of the starts, the end of others being \
+             unknown",
+            of(least, false),
+            of(most, true)
+        ),
+        (1.0, None) => format!("from all {} starts", grouped(u64::from(share.starts))),
+        (least, None) => format!("from {} % of the starts", of(least, false)),
+    };
+    format!("control ends in sliding {from}: {sure}")
+}
+
+fn tell(
+    share: &BasinShare,
+    (units, digits): (&Units, Digits),
+    output: Option<&Path>,
+) -> Result<(), Failure> {
+    let out = &mut ForPeople::begin();
+    let mut row = |name: &str, text: String| writeln!(out, "  {name:<16} {text}");
     let unit = |parameter| unit_behind(&units.of_parameter(parameter));
-    rows.row("over", over(share))?;
+    if let Some(text) = sliding(share, digits) {
+        row("sliding", text)?;
+    }
+    let others = share.outcomes.iter();
+    for of in others.filter(|of| of.outcome != "sliding" && of.starts > 0) {
+        let (share, error) = with_error(of.share, of.error);
+        row(of.outcome, format!("{share} ± {error} of the starts"))?;
+    }
+    let (starts, scramblings) = (grouped(u64::from(share.starts)), share.scramblings);
+    row("starts", format!("{starts} in {scramblings} scramblings"))?;
+    row("over", over(share).into())?;
     for (parameter, range) in [(Parameter::XDot0, share.x_dot0), (Parameter::A0, share.a0)] {
-        if let Some([from, to]) = range {
-            let text = format!("{} to {}{}", six(from), six(to), unit(parameter));
-            rows.row(parameter.name(), text)?;
+        if let Some([from, to]) = range.map(|range| range.map(|end| digits.of(end))) {
+            row(
+                parameter.name(),
+                format!("{from} to {to}{}", unit(parameter)),
+            )?;
         }
     }
     if let Some(period) = share.period {
-        let text = format!("0 to {}{}", six(period), unit(Parameter::SwitchOnPhase));
-        rows.row("phase", text)?;
+        let unit = unit(Parameter::SwitchOnPhase);
+        row("phase", format!("0 to {}{unit}", digits.of(period)))?;
     }
-    let (starts, scramblings) = (grouped(u64::from(share.starts)), share.scramblings);
-    rows.row("starts", format!("{starts} in {scramblings} scramblings"))?;
-    rows.row("sliding", sliding(share))?;
-    for of in share
-        .outcomes
-        .iter()
-        .filter(|of| of.outcome != "sliding" && of.starts > 0)
-    {
-        let (share, error) = (of.share, of.error);
-        rows.row(of.outcome, format!("{share:.5} ± {error:.5} of the starts"))?;
-    }
-    if units.dimensionless() {
-        rows.row("units", "none: dimensionless")?;
-    }
-    drop(rows);
+    tell_dimensionless(out, units)?;
     match output {
-        Some(path) => say::result(format_args!("{}: {starts} starts", path.display())),
+        Some(path) => Ok(writeln!(out, "{}: {starts} starts", path.display())?),
         None => Ok(()),
     }
-}
-
-/// A number with at most six digits.
-fn six(value: f64) -> String {
-    rounded(value, 5)
 }
 
 /// The kind of starts, in words.
@@ -353,25 +382,14 @@ fn over(share: &BasinShare) -> &'static str {
     }
 }
 
-/// The share that ends in sliding, in words.
-fn sliding(share: &BasinShare) -> String {
-    let (Some(least), Some(error), Some(most), Some([low, high])) = (
-        finite(share.basin_share),
-        finite(share.basin_share_error),
-        finite(share.basin_share_upper),
-        share.interval,
-    ) else {
-        return "no share: there is no uncontrolled stick-slip to switch on in".into();
-    };
-    if share.linearly_unstable {
-        return "0 of the starts: sliding is linearly unstable".into();
-    }
-    let undecided = match most > least {
-        true => format!(", {most:.5} if all that are undecided slide"),
-        false => String::new(),
-    };
-    format!(
-        "{least:.5} ± {error:.5} of the starts{undecided}; {low:.4} to {high:.4} with 95 % \
-         confidence"
-    )
+/// The share that ends in sliding with its error; none where the sentence says it all.
+fn sliding(share: &BasinShare, digits: Digits) -> Option<String> {
+    let least = finite(share.basin_share).filter(|_| !share.linearly_unstable)?;
+    let error = finite(share.basin_share_error)?;
+    let most = finite(share.basin_share_upper).filter(|most| *most > least);
+    let undecided = most.map_or_else(String::new, |most| {
+        format!(", {} if all that are undecided slide", digits.of(most))
+    });
+    let (least, error) = with_error(least, error);
+    Some(format!("{least} ± {error} of the starts{undecided}"))
 }

@@ -12,9 +12,10 @@ use crate::setting::{Field, Parameter};
 use crate::text::finite;
 
 use super::asked::subject;
+use super::margins;
 use super::margins::of_what_is_given;
 use super::output::tell_dimensionless;
-use super::{margins, vc};
+use super::vc_text::VcText;
 
 /// A number with as many digits as a person can use.
 fn short(value: f64) -> String {
@@ -257,7 +258,7 @@ fn print_recommended(
     let violations = margins::violations(&point.stability);
     margins::print(out, &point.margins, violations, setting, units)?;
     match &told.vc {
-        Some(found) => vc::print_short(out, found, units),
+        Some(found) => VcText::of(found, units).print_short(out),
         None => Ok(()),
     }
 }

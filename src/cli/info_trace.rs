@@ -12,6 +12,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;
+use super::digits::Digits;
 use super::failure::Failure;
 use super::info::{origin, tell_text};
 use super::json::{self, Inputs, as_object};
@@ -173,7 +174,7 @@ impl Facts {
             rows.row("events", format!("{name:<12} {}", grouped(*count)))?;
         }
         rows.row("outcome", self.outcome)?;
-        for (name, value) in motion_text::numbers(summary, units) {
+        for (name, value) in motion_text::numbers(summary, units, Digits::default()) {
             rows.row("", format!("{name:<12} {value}"))?;
         }
         rows.row("", format!("{:<12} {}", "steps", grouped(self.steps)))

@@ -13,6 +13,7 @@
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
 //! - `control`: controls by name
+//! - `digits`: how many digits people are shown of a number: `--digits`
 //! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
 //! - `failure`: how a command fails
@@ -65,6 +66,7 @@
 //! - `system_args`: a system from a file, or a shipped one, instead of the letter's
 //! - `text_output`: text on standard output, or in a file that is written completely or not at all
 //! - `vc`: `slipmap vc`
+//! - `vc_text`: the output of `slipmap vc` for people
 //! - `verify`: `slipmap verify`
 //! - `work`: `slipmap work`
 
@@ -81,6 +83,7 @@ mod cgroup;
 mod colours;
 mod completions;
 mod control;
+mod digits;
 mod excerpt;
 mod export;
 mod failure;
@@ -132,6 +135,7 @@ mod sweep_file;
 mod system_args;
 mod text_output;
 mod vc;
+mod vc_text;
 mod verify;
 mod work;
 

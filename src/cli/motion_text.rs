@@ -10,6 +10,7 @@ use crate::slip::motion::MOST_KEPT;
 use crate::slip::outcome::{Outcome, Summary};
 use crate::text::Shown;
 
+use super::digits::Digits;
 use super::inputs_line;
 use super::output::tell_dimensionless;
 
@@ -17,11 +18,16 @@ use super::output::tell_dimensionless;
 const EVENTS_SHOWN: usize = 12;
 
 /// Writes the outcome of a motion, its numbers and its last events.
-pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
+pub(super) fn print(
+    out: &mut impl Write,
+    spec: &CaseSpec,
+    trace: &Trace,
+    digits: Digits,
+) -> std::io::Result<()> {
     let (summary, units) = (&trace.summary, &spec.units);
+    writeln!(out, "{}", verdict(summary, spec, digits))?;
     inputs_line::print(out, &spec.setting, units, &[])?;
-    writeln!(out, "{}", verdict(summary, spec))?;
-    for (name, value) in numbers(summary, units) {
+    for (name, value) in numbers(summary, units, digits) {
         writeln!(out, "  {name:<16} {value}")?;
     }
     writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
@@ -41,14 +47,18 @@ pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std
         )?;
     }
     for event in &events[hidden..] {
-        let (t, a) = (digits(event.t), digits(event.a));
+        let (t, a) = (digits.of(event.t), digits.of(event.a));
         writeln!(out, "{t:>18}{a:>18}  {}", event.name())?;
     }
     Ok(())
 }
 
 /// The finite numbers of a motion, by name, with their units.
-pub(super) fn numbers(summary: &Summary, units: &Units) -> Vec<(&'static str, String)> {
+pub(super) fn numbers(
+    summary: &Summary,
+    units: &Units,
+    digits: Digits,
+) -> Vec<(&'static str, String)> {
     let finite = summary.numbers().into_iter();
     let finite = finite.filter(|(_, value)| value.is_finite());
     let told = finite.map(|(name, value)| {
@@ -59,35 +69,39 @@ pub(super) fn numbers(summary: &Summary, units: &Units) -> Vec<(&'static str, St
         } else {
             name
         };
-        (name, format!("{}{unit}", digits(value)))
+        (name, format!("{}{unit}", digits.of(value)))
     });
     told.collect()
 }
 
-/// A number with ten digits, whatever its size.
-fn digits(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        size @ 1e-4..1e6 => {
-            // Digits are counted after rounding: 9.9999999999 becomes a number with two digits
-            // before the point.
-            let rounded = format!("{size:.9e}");
-            let exponent = rounded
-                .split('e')
-                .nth(1)
-                .and_then(|e| e.parse::<i32>().ok());
-            let behind = usize::try_from(9 - exponent.unwrap_or(0)).unwrap_or(0);
-            format!("{value:.behind$}")
+/// From when on the velocity stays near v0, in words.
+fn settled(summary: &Summary, spec: &CaseSpec, digits: Digits) -> String {
+    let since = match spec.case.switch_on.is_finite() {
+        true => "switch-on",
+        false => "the start",
+    };
+    match summary.settle_time {
+        // What rounding leaves of 0.
+        t if t <= 1e-9 * summary.decided => format!("from {since} on"),
+        t => {
+            let unit = unit_behind(&spec.units.time());
+            format!("{}{unit} after {since}", digits.of(t))
         }
-        _ => format!("{value:.9e}"),
     }
 }
 
 /// The outcome of the motion, in words.
-fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
+fn verdict(summary: &Summary, spec: &CaseSpec, digits: Digits) -> String {
+    let time = |value: f64| digits.of(value) + &unit_behind(&spec.units.time());
     match summary.outcome {
-        Outcome::Sliding => "the block comes to slide continuously".into(),
-        Outcome::StickSlip => "the block sticks and slips periodically".into(),
+        Outcome::Sliding => format!(
+            "the block comes to slide continuously: within 1 % of v0 {}",
+            settled(summary, spec, digits)
+        ),
+        Outcome::StickSlip => format!(
+            "the block sticks and slips periodically, every {}",
+            time(summary.period)
+        ),
         Outcome::Oscillation => "the block oscillates periodically without sticking".into(),
         Outcome::LiftOff => "the block lifts off: the load reaches 0, where the model ends".into(),
         Outcome::Diverged => "the motion grows beyond all bounds".into(),
@@ -97,29 +111,9 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
         Outcome::Undecided if summary.decided < spec.case.horizon => format!(
             "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are \
              kept, or friction has no coefficient at a speed of the block",
-            digits(summary.decided)
+            digits.of(summary.decided)
         ),
         Outcome::Undecided => format!("undecided at the horizon, t = {}", Shown(spec.case.horizon)),
         Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_ten_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (-0.5, "-0.5000000000"),
-            (61.931764, "61.93176400"),
-            (9.99999999999, "10.00000000"),
-            (0.000123456789012, "0.0001234567890"),
-            (123456.7890123, "123456.7890"),
-            (1e7, "1.000000000e7"),
-        ] {
-            assert_eq!(digits(value), text);
-        }
     }
 }

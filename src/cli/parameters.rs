@@ -209,12 +209,11 @@ impl<A: Asks> ParameterArgs<A> {
     }
 
     /// The setting for a critical velocity: it needs a friction law, and a delay only if control
-    /// acts. A v0 is ignored, so that the same flags work for all commands.
+    /// acts. A v0 is no part of it, so that the same flags work for all commands.
     pub(super) fn setting_without_v0(&self) -> Result<Setting, Failure> {
         self.check_law()?;
         let mut setting = self.setting_with(self.unneeded_delay(), Some(Parameter::V0), &[], "")?;
         if self.given(Parameter::V0).is_some() {
-            say::note("--v0 is left aside: the critical velocity is one");
             setting.set(Parameter::V0, f64::NAN);
         }
         setting.friction_law().map_err(|e| self.refused(&e))?;

@@ -13,8 +13,8 @@ use crate::setting::units::Units;
 use crate::text::Shown;
 
 use super::asked::Asked;
+use super::digits::DigitsArgs;
 use super::failure::Failure;
-use super::inputs_line;
 use super::json::{self, AnswerSchema};
 use super::output::check_picture;
 use super::parameter_values::{amount_of, in_units};
@@ -47,6 +47,8 @@ pub(super) struct Args {
     /// Draw the roots in the complex plane and the stable delays, as .png, .svg or .pdf
     #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    digits: DigitsArgs,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
@@ -122,8 +124,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         json::print(&inputs, &point)?;
     } else {
         let mut out = ForPeople::begin();
-        inputs_line::print(&mut out, &asked.setting, &asked.units, &[])?;
-        point_text::print(&mut out, &point, &asked)?;
+        point_text::print(&mut out, &point, &asked, args.digits.get())?;
     }
     let (Some(plot), Point::Block(listed)) = (&args.plot, &point) else {
         return Ok(());

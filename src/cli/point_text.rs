@@ -8,36 +8,29 @@ use crate::explore::stability::{Spectrum, Stability};
 use crate::report::numbers::unit_behind;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter, Setting};
-use crate::sweep::relaxation_time;
 use crate::text::{Shown, finite};
 
 use super::asked::{Asked, subject};
+use super::digits::Digits;
+use super::inputs_line;
 use super::margins::of_fit;
 use super::output::tell_dimensionless;
 
 /// Number of stable intervals printed for people; the JSON output has all, up to a hundred
 /// thousand.
 const INTERVALS_SHOWN: usize = 12;
-
-/// A number with about twelve digits, for a table.
-fn digits(value: f64) -> String {
-    match value.abs() {
-        f64::INFINITY => "infinity".into(),
-        0.0 => "0".into(),
-        1e-4..1e6 => format!("{value:.12}"),
-        _ => format!("{value:.11e}"),
-    }
-}
+/// How wide a column of the table of roots is.
+const WIDTH: usize = 24;
 
 fn print_spectrum(
     spectrum: &Spectrum,
-    units: &Units,
+    (units, digits, scale): (&Units, Digits, &str),
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let certified = match (spectrum.certified, finite(spectrum.certificate_margin)) {
         (true, Some(margin)) => format!(
-            "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), \
-            |abscissa|)"
+            "yes: no root farther right than abscissa + {} max({scale}, |abscissa|)",
+            digits.of(margin)
         ),
         _ => "no".into(),
     };
@@ -45,21 +38,23 @@ fn print_spectrum(
     let head = [
         ("re lambda", units.rate()),
         ("im lambda", units.angular_frequency()),
-        ("relaxation time", units.time()),
+        ("time constant", units.time()),
     ];
     let title = |(title, unit): (&str, String)| {
         let title = format!("{title}{}", unit_behind(&unit));
-        format!("{title:>22}")
+        format!("{title:>WIDTH$}")
     };
     row("roots", head.map(title).concat())?;
     for [re, im] in &spectrum.roots {
         let pair = if *im == 0.0 { "" } else { "±" };
         let cells = [
-            digits(*re),
-            format!("{pair}{}", digits(*im)),
-            digits(relaxation_time(*re)),
+            digits.of(*re),
+            format!("{pair}{}", digits.of(*im)),
+            digits.of(1.0 / re.abs()),
         ];
-        row("", cells.map(|cell| format!("{cell:>22}")).concat())?;
+        let cells = cells.map(|cell| format!("{cell:>WIDTH$}")).concat();
+        let grows = if *re > 0.0 { ", growing" } else { "" };
+        row("", cells + grows)?;
     }
     match &spectrum.fewer {
         Some(why) => row("", why.clone()),
@@ -77,51 +72,75 @@ fn verdict(stability: &Stability) -> &'static str {
     }
 }
 
+/// How fast disturbances decay or grow, in words; nothing where that is not known or does not go
+/// with the verdict.
+fn pace(stability: &Stability, units: &Units, digits: Digits) -> String {
+    let told = |does: &str, time: f64| {
+        let unit = unit_behind(&units.time());
+        format!(
+            ": disturbances {does} by a factor e in {}{unit}",
+            digits.of(time)
+        )
+    };
+    let abscissa = stability.spectrum.abscissa;
+    match (stability.stable, stability.marginal) {
+        (true, false) if abscissa < 0.0 => told("decay", -1.0 / abscissa),
+        (false, false) if abscissa > 0.0 => told("grow", 1.0 / abscissa),
+        _ => String::new(),
+    }
+}
+
 /// Prints a point for people.
-pub(super) fn print(out: &mut impl Write, point: &Point, asked: &Asked) -> std::io::Result<()> {
+pub(super) fn print(
+    out: &mut impl Write,
+    point: &Point,
+    asked: &Asked,
+    digits: Digits,
+) -> std::io::Result<()> {
     let (units, stability) = (&asked.units, point.stability());
     let subject = subject(&asked.setting, "continuous sliding");
-    writeln!(out, "{subject} is {}", verdict(stability))?;
+    let pace = pace(stability, units, digits);
+    writeln!(out, "{subject} is {}{pace}", verdict(stability))?;
+    inputs_line::print(out, &asked.setting, units, &[])?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     match point {
         Point::Block(point) => {
-            print_block(point, asked, &mut row)?;
-            print_stability(stability, true, units, &mut row)?;
+            print_block(point, asked, digits, &mut row)?;
+            let with = (units, digits, "1/sqrt(M/kappa)");
+            print_stability(stability, true, with, &mut row)?;
             if let Some(fit) = &point.margins.fit {
                 row("fit", of_fit(fit, &point.margins, units))?;
             }
             tell_dimensionless(out, units)
         }
         Point::System(point) => {
-            print_system(point, &asked.setting, &mut row)?;
-            print_stability(stability, point.line_of_delays, units, &mut row)
+            print_system(point, &asked.setting, digits, &mut row)?;
+            let with = (units, digits, "1");
+            print_stability(stability, point.line_of_delays, with, &mut row)
         }
     }
 }
 
-/// What is told of the block besides its stability.
+/// What follows from the friction law of the block: the slope and the coefficient at v0, and the
+/// stiffness ratio.
 fn print_block(
     point: &BlockPoint,
     Asked { setting, units, .. }: &Asked,
+    digits: Digits,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let given = [
+    let at_v0 = [
         (Parameter::MuPrime, point.mu_prime),
         (Parameter::MuK, point.mu_k),
-        (Parameter::AlphaV, point.alpha_v),
-        (Parameter::AlphaN, point.alpha_n),
-        (Parameter::Tau, point.tau),
     ];
-    let beyond = Parameter::ALL.into_iter().filter(|p| p.absent_by_default());
-    let beyond = beyond
-        .filter(|parameter| setting.uses(*parameter))
-        .map(|parameter| (parameter, setting.get(parameter)));
-    for (parameter, value) in given.into_iter().chain(beyond) {
+    // Without a law they are inputs.
+    let at_v0 = at_v0.into_iter().filter(|_| setting.law().is_some());
+    for (parameter, value) in at_v0 {
         let unit = unit_behind(&units.of_parameter(parameter));
-        row(parameter.name(), format!("{}{unit}", Shown(value)))?;
+        row(parameter.name(), format!("{}{unit}", digits.of(value)))?;
     }
     match point.stiffness_ratio {
-        Some(ratio) => row(Field::StiffnessRatio.name(), Shown(ratio).to_string()),
+        Some(ratio) => row(Field::StiffnessRatio.name(), digits.of(ratio)),
         None => Ok(()),
     }
 }
@@ -130,6 +149,7 @@ fn print_block(
 fn print_system(
     point: &SystemPoint,
     setting: &Setting,
+    digits: Digits,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     for (name, text) in setting.system().iter().flat_map(|s| s.expressions()) {
@@ -152,7 +172,7 @@ fn print_system(
         return Ok(());
     }
     let margin = finite(point.latency_margin);
-    let margin = margin.map_or("infinite, or not known".into(), |m| Shown(m).to_string());
+    let margin = margin.map_or("infinite, or not known".into(), |m| digits.of(m));
     row("latency_margin", margin)
 }
 
@@ -160,7 +180,7 @@ fn print_system(
 fn print_stability(
     stability: &Stability,
     line_of_delays: bool,
-    units: &Units,
+    (units, digits, scale): (&Units, Digits, &str),
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let or_unknown = |n: Option<u64>| n.map_or("unknown".into(), |n| n.to_string());
@@ -180,9 +200,11 @@ fn print_stability(
             format!("{line}{}", unit_behind(&units.rate())),
         )?;
     }
+    let spectrum = &stability.spectrum;
+    print_rightmost(spectrum, (units, digits), &mut row)?;
     let time = unit_behind(&units.time());
     let margin = match finite(stability.delay_margin) {
-        Some(margin) => format!("{}{time}", Shown(margin)),
+        Some(margin) => format!("{}{time}", digits.of(margin)),
         None if stability.delay_margin_kind == MarginKind::Infinite => {
             "infinite: no delay changes stability".into()
         }
@@ -191,9 +213,33 @@ fn print_stability(
     if line_of_delays {
         row("delay_margin", margin)?;
     }
-    let spectrum = &stability.spectrum;
+    if let Some(essential) = finite(stability.essential_abscissa) {
+        let unit = unit_behind(&units.rate());
+        row(
+            "essential",
+            format!("{}{unit}: roots accumulate there", digits.of(essential)),
+        )?;
+    }
+    if line_of_delays {
+        print_delays(stability, (units, digits), &mut row)?;
+    }
+    print_spectrum(spectrum, (units, digits, scale), &mut row)
+}
+
+/// The rightmost root: how fast disturbances decay or grow, and how they oscillate.
+fn print_rightmost(
+    spectrum: &Spectrum,
+    (units, digits): (&Units, Digits),
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let abscissa = spectrum.abscissa;
+    let constant = match abscissa > 0.0 {
+        true => "growth_time",
+        false => Field::RelaxationTime.name(),
+    };
     for (name, value, unit) in [
-        (Field::Abscissa.name(), spectrum.abscissa, units.rate()),
+        (Field::Abscissa.name(), abscissa, units.rate()),
+        (constant, 1.0 / abscissa.abs(), units.time()),
         (
             Field::Frequency.name(),
             spectrum.frequency,
@@ -201,28 +247,22 @@ fn print_stability(
         ),
     ] {
         let unit = unit_behind(&unit);
-        let text = finite(value).map_or("unknown".into(), |v| format!("{}{unit}", Shown(v)));
+        let text = match value.is_nan() {
+            true => "unknown".into(),
+            false => format!("{}{unit}", digits.of(value)),
+        };
         row(name, text)?;
     }
-    if let Some(essential) = finite(stability.essential_abscissa) {
-        let unit = unit_behind(&units.rate());
-        row(
-            "essential",
-            format!("{}{unit}: roots accumulate there", Shown(essential)),
-        )?;
-    }
-    if line_of_delays {
-        print_delays(stability, units, &mut row)?;
-    }
-    print_spectrum(spectrum, units, &mut row)
+    Ok(())
 }
 
-/// The crossings of the point's line, and its stable delays.
+/// The stable delays of the point's line, and its crossings.
 fn print_delays(
     stability: &Stability,
-    units: &Units,
+    (units, digits): (&Units, Digits),
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
+    print_intervals(stability, (units, digits), &mut row)?;
     let time = unit_behind(&units.time());
     for crossing in stability.crossings.iter().flatten() {
         let direction = match crossing.direction {
@@ -231,24 +271,33 @@ fn print_delays(
         };
         let text = format!(
             "{direction} at omega = {}{}, tau = {}{time} + k {}{time}",
-            Shown(crossing.omega),
+            digits.of(crossing.omega),
             unit_behind(&units.angular_frequency()),
-            Shown(crossing.first_delay),
-            Shown(std::f64::consts::TAU / crossing.omega)
+            digits.of(crossing.first_delay),
+            digits.of(std::f64::consts::TAU / crossing.omega)
         );
         row("crossing", text)?;
     }
+    Ok(())
+}
+
+/// The stable delays.
+fn print_intervals(
+    stability: &Stability,
+    (units, digits): (&Units, Digits),
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let time = unit_behind(&units.time());
     let Some(intervals) = &stability.stable_delays else {
         return row("stable delays", "unknown".into());
     };
     if intervals.is_empty() {
         row("stable delays", "none".into())?;
     }
-    for interval in intervals.iter().take(INTERVALS_SHOWN) {
-        let end =
-            finite(interval[1]).map_or("infinity".into(), |to| format!("{}{time}", Shown(to)));
-        let from = Shown(interval[0]);
-        row("stable delays", format!("{from}{time} < tau < {end}"))?;
+    for [from, to] in intervals.iter().take(INTERVALS_SHOWN) {
+        let unit = if to.is_finite() { &time } else { "" };
+        let (from, to) = (digits.of(*from), digits.of(*to));
+        row("stable delays", format!("{from}{time} < tau < {to}{unit}"))?;
     }
     match intervals.len().saturating_sub(INTERVALS_SHOWN) {
         more if stability.stable_delays_truncated => {

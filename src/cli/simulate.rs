@@ -24,6 +24,7 @@ use utoipa::ToSchema;
 use super::asks::OfStickSlip;
 use super::case_facts::CaseFacts;
 use super::cell::{CellArgs, alone};
+use super::digits::DigitsArgs;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
@@ -67,6 +68,8 @@ pub(super) struct Args {
     /// Replace the trace of another case, or a text
     #[arg(long)]
     fresh: bool,
+    #[command(flatten)]
+    digits: DigitsArgs,
     /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
@@ -244,7 +247,7 @@ impl Args {
             };
             return json::print(&inputs, &answer);
         }
-        motion_text::print(&mut ForPeople::begin(), spec, trace)?;
+        motion_text::print(&mut ForPeople::begin(), spec, trace, self.digits.get())?;
         let samples = grouped(trace.samples.len() as u64);
         say::result(format_args!("{}: {samples} samples", path.display()))
     }

@@ -96,11 +96,12 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A number with at most `digits` digits after its first one. Nine digits in all are the same on
-/// every machine.
+/// A number with at most `digits` digits after its first one, and a zero without a sign. Nine
+/// digits in all are the same on every machine.
 #[must_use]
 pub fn rounded(value: f64, digits: usize) -> String {
-    Shown(to_digits(value, digits)).to_string()
+    // What is added makes of -0 a 0, and changes nothing else.
+    Shown(to_digits(value, digits) + 0.0).to_string()
 }
 
 /// A bound with at most `digits` digits after its first one, rounded up or down: outwards, so that

@@ -203,7 +203,7 @@ fn threads_change_no_byte_and_starts_are_told() {
     assert_eq!(rows[0], ["scrambling", "x_dot0", "a0", "outcome"]);
     assert_eq!(rows.len(), 257);
     let sliding = rows.iter().filter(|row| row[3] == "sliding").count();
-    let share = format!("{:.5} ±", sliding as f64 / 256.0);
+    let share = format!("{:.4} ±", sliding as f64 / 256.0);
     assert!(out(&one).contains(&share), "{share}");
     // Each start is a case of its own.
     for row in rows[1..].iter().step_by(37) {

@@ -206,8 +206,9 @@ fn formulas_in_flags_are_completed_and_told_in_one_line() {
     let broken = folder.run(&[&line[..], &["0.3 +\n  0.1*v\r\n"]].concat());
     expect(&broken, 0, "");
     let told = out(&broken);
-    let first = told.lines().next().unwrap();
-    assert!(first.contains("mu_k = 0.3 + 0.1*v; free period"), "{told}");
+    let mut inputs = told.lines().filter(|line| line.starts_with("inputs: "));
+    let inputs = inputs.next().unwrap();
+    assert!(inputs.contains("mu_k = 0.3 + 0.1*v; free period"), "{told}");
 }
 
 /// A map of 8 cells, whose first axis is `own`, of the formula `mu_k`.

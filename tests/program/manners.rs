@@ -202,8 +202,15 @@ fn only_what_is_possible_is_offered() {
     assert!(offers("point", "--tau") && !offers("best", "--tau"));
     let law = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];
     let vc = |more: &[&str]| folder.run(&[&["vc"], &law[..], more].concat());
-    assert_eq!(out(&vc(&["--v0", "0.3"])), out(&vc(&[])));
-    expect(&vc(&["--v0", "0.3"]), 0, "--v0 is left aside");
+    // A v0 is no part of the question: the answer says where it stands.
+    let (with, without) = (out(&vc(&["--v0", "8.2828"])), out(&vc(&[])));
+    let (says, rest) = with.split_once('\n').unwrap();
+    assert_eq!(
+        says,
+        "above 4.14139 no stick-slip survives; v0 = 8.2828 is 2 times that"
+    );
+    assert_eq!(rest, without.split_once('\n').unwrap().1);
+    expect(&vc(&["--v0", "0.3", "--json"]), 0, "--v0 is left aside");
     expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
     let cell = ["--map", "small.h5", "--at", "alpha_v=-1", "--at", "tau=1"];
     for (command, says) in [
@@ -402,7 +409,9 @@ fn what_is_not_known_is_not_told_as_a_number() {
     ];
     let output = folder.run(&[&args[..], &["--tau", "0.08933671843919264"]].concat());
     let text = out(&output);
-    let vc = text.lines().find(|line| line.starts_with("vc ")).unwrap();
+    let says = "it is not known above which velocity no stick-slip survives, between 0.00";
+    assert!(text.starts_with(says), "{text}");
+    let vc = text.lines().find(|line| line.starts_with("  vc ")).unwrap();
     assert!(vc.contains("not known, between 0.00"), "{text}");
     assert!(
         !text.contains("v_liftoff") && !text.contains("windows"),
@@ -918,7 +927,7 @@ fn mistakes_have_places() {
 fn numbers_are_short() {
     let folder = Folder::with(&[("tiny.toml", &SMALL.replace("tau = [1,", "tau = [1e-300,"))]);
     let point = folder.run(&["point", "--mu-prime=-0.3", "--alpha-v=-0.1", "--tau=1e-300"]);
-    expect(&point, 0, "tau 1e-300");
+    expect(&point, 0, "tau = 1e-300");
     expect(
         &folder.run(&["plan", "tiny.toml"]),
         0,
@@ -927,9 +936,19 @@ fn numbers_are_short() {
     let vc = "vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15";
     let vc: Vec<&str> = vc.split_whitespace().collect();
     let told = folder.run(&vc);
-    for says in ["vc 0.344467", "vc_lower 0.34446", "windows [[0,0.344467]]"] {
+    for says in [
+        "above 0.344467 no stick-slip survives",
+        "vc 0.344467",
+        "windows 0 < v0 <= 0.344467",
+    ] {
         expect(&told, 0, says);
     }
     let json = program::json(&folder.run(&[&vc[..], &["--json"]].concat()));
     assert!(json["vc"].to_string().len() > 12, "{json}");
+    let digits = |n: &str| out(&folder.run(&[&vc[..], &["--digits", n]].concat()));
+    assert!(digits("2").starts_with("above 0.34 no stick-slip survives\n"));
+    let all = format!("above {} no stick-slip survives\n", json["vc"]);
+    assert!(digits("17").starts_with(&all), "{all}");
+    let both = folder.run(&[&vc[..], &["--digits", "3", "--json"]].concat());
+    expect(&both, 2, "cannot be used with '--json'");
 }

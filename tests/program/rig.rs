@@ -72,7 +72,7 @@ fn from_a_rig_to_a_setting() {
     let (here, there) = (here.as_f64().unwrap(), there.as_f64().unwrap());
     assert!((here - there).abs() < 1e-3 * there.abs(), "{point}");
     let drawn = folder.run(&[&["point", "--plot", "point.svg"], &of_setting[..]].concat());
-    assert_row(&out(&drawn), "tau", "s");
+    assert_row(&out(&drawn), "delay_margin", "s");
     let svg = std::fs::read_to_string(folder.path().join("point.svg")).unwrap();
     assert!(svg.contains("(rad s⁻¹)"), "{svg}");
     let vc = [&["vc"], &of_setting[..]].concat();
