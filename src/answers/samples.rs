@@ -122,6 +122,8 @@ mod tests {
             a: 0.0,
             v: 0.0,
             n: 1.0,
+            pulling_force: 0.0,
+            friction_force: 0.0,
             mode: Mode::Stick,
         }
     }

@@ -6,6 +6,7 @@ pub use super::trace_error::TraceError;
 use crate::model::stop::Stop;
 use crate::setting::case_file::{CaseSpec, Sampling};
 use crate::slip::case::{Case, CaseError, CaseUnits};
+use crate::slip::forces::{Forces, State};
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 use crate::slip::speeds::Speeds;
@@ -44,6 +45,11 @@ pub struct Sample {
     pub v: f64,
     /// Normal load.
     pub n: f64,
+    /// Force of the spring, and of the dashpot beside it, on the block.
+    pub pulling_force: f64,
+    /// Friction force on the block, positive where it acts backwards; without the dashpot to the
+    /// ground.
+    pub friction_force: f64,
     /// The mode of the block from this time on.
     pub mode: Mode,
 }
@@ -229,7 +235,8 @@ fn physical(motion: &Motion, kind: Event, units: CaseUnits) -> TraceEvent {
 }
 
 /// Samples a motion step by step.
-struct Recorder {
+struct Recorder<'c> {
+    case: &'c Case,
     motion: Motion,
     /// Displacement since the start.
     x: f64,
@@ -251,9 +258,10 @@ struct Begun {
     marked: bool,
 }
 
-impl Recorder {
-    fn new(case: &Case, sampling: Sampling, most: Most, stop: &Stop) -> Result<Self, CaseError> {
+impl<'c> Recorder<'c> {
+    fn new(case: &'c Case, sampling: Sampling, most: Most, stop: &Stop) -> Result<Self, CaseError> {
         Ok(Self {
+            case,
             motion: case.motion()?.heeding(stop.clone()),
             x: 0.0,
             units: case.units(),
@@ -336,38 +344,54 @@ impl Recorder {
     /// with other values.
     fn sample_end(&mut self, begun: Begun, before: bool) {
         let length = self.motion.last_step().length;
-        let mut sample = Sample::of(&self.motion, self.units, begun, length);
+        let mode = match before {
+            true => begun.mode,
+            false => self.motion.mode(),
+        };
+        let mut sample = Sample::of(&self.motion, self.case, Begun { mode, ..begun }, length);
         if before {
             sample.t = sample.t.next_down();
-        } else {
-            sample.mode = self.motion.mode();
         }
         self.samples.add(true, || sample);
     }
 
     fn add(&mut self, begun: Begun, marked: bool, s: f64) {
-        let Self {
-            motion, samples, ..
-        } = self;
-        let units = self.units;
-        samples.add(marked, || Sample::of(motion, units, begun, s));
+        let (motion, case) = (&self.motion, self.case);
+        self.samples
+            .add(marked, || Sample::of(motion, case, begun, s));
     }
 }
 
 impl Sample {
     /// The state of a motion, `s` after the beginning of its last step.
-    fn of(motion: &Motion, units: CaseUnits, begun: Begun, s: f64) -> Self {
+    fn of(motion: &Motion, case: &Case, begun: Begun, s: f64) -> Self {
+        let units = case.units();
         let step = motion.last_step();
         let (u, a, n) = step.state(s);
         let limits = motion.parameters().feedback.limits;
-        Self {
-            t: (begun.t + s) * units.time,
-            x: (begun.x + step.displacement(s)) * units.length,
+        let state = State {
+            mode: begun.mode,
             x_dot: u * units.velocity,
             a: a * units.length,
             v: limits.velocity_of(step.velocity(s)) * units.velocity,
             n: limits.load_of(n) * units.force,
-            mode: begun.mode,
+        };
+        let [t, x] = [begun.t + s, begun.x + step.displacement(s)];
+        Self::in_state(t * units.time, x * units.length, state, case.forces(state))
+    }
+
+    /// The sample of a state.
+    pub(crate) fn in_state(t: f64, x: f64, state: State, forces: Forces) -> Self {
+        Self {
+            t,
+            x,
+            x_dot: state.x_dot,
+            a: state.a,
+            v: state.v,
+            n: state.n,
+            pulling_force: forces.pulling,
+            friction_force: forces.friction,
+            mode: state.mode,
         }
     }
 }

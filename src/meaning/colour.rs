@@ -49,6 +49,9 @@ pub(crate) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
 pub(crate) const STABLE_TINT: Rgb = Rgb(0xa0, 0xd5, 0xcf);
 /// Areas where the block sticks, below a line.
 pub(crate) const STUCK: Rgb = Rgb(0xe2, 0xd8, 0xc0);
+/// The force of the spring on the block, and friction.
+pub(crate) const PULLING_FORCE: Rgb = Rgb(0x00, 0x72, 0xb2);
+pub(crate) const FRICTION_FORCE: Rgb = Rgb(0xd5, 0x5e, 0x00);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
 pub(crate) const UNSTABLE: [Rgb; 4] = [
     Rgb(0xf6, 0xe8, 0xc3),

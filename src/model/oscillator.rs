@@ -100,6 +100,12 @@ impl Oscillator {
         })
     }
 
+    /// The dashpots, mass/time.
+    #[must_use]
+    pub fn dashpots(&self) -> Dashpots {
+        self.dashpots
+    }
+
     /// d = c/√(κM) and g = c_g/√(κM): twice their damping ratios.
     #[must_use]
     pub fn dashpot_ratios(&self) -> Dashpots {

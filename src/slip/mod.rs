@@ -2,6 +2,7 @@
 //!
 //! - [`case`]: a motion in physical units, to its outcome
 //! - [`cycle`]: motions that begin in uncontrolled stick-slip
+//! - [`forces`]: the forces on the block in a state
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
 //! - `sliding`: linear stability of sliding
@@ -15,6 +16,7 @@
 pub mod case;
 mod collocation;
 pub mod cycle;
+pub mod forces;
 mod graze;
 mod history;
 pub mod motion;

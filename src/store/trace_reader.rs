@@ -11,6 +11,8 @@ use super::values::{Number, whole};
 use crate::answers::Trace;
 use crate::answers::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
 use crate::setting::{CaseSpec, Parameter};
+use crate::slip::case::Case;
+use crate::slip::forces::{Forces, State};
 use crate::slip::outcome::{Outcome, Summary};
 use crate::sweep::described::schema::{self, trace};
 use crate::sweep::described::trace::{QUANTITIES, TIME};
@@ -123,7 +125,7 @@ impl TraceFile {
         let (file, spec) = opened(path)?;
         let read = || -> hdf5::Result<Trace> {
             Ok(Trace {
-                samples: samples(&file)?,
+                samples: samples(&file, &spec.case)?,
                 events: events(&file)?,
                 summary: summary(&file, spec.case.switch_on)?,
             })
@@ -189,25 +191,40 @@ fn named<T: Copy>(all: &[(T, &str)], number: u8) -> hdf5::Result<T> {
     known.ok_or_else(|| format!("it has a kind of number {number}, which there is not").into())
 }
 
-fn samples(file: &File) -> hdf5::Result<Vec<Sample>> {
+fn samples(file: &File, case: &Case) -> hdf5::Result<Vec<Sample>> {
     let times = column::<f64>(file, TIME.name, None)?;
     if times.is_empty() {
         return Err(NO_SAMPLES.into());
     }
     let rows = Some(times.len());
     let modes = column::<u8>(file, trace::MODE, rows)?;
-    let [x, x_dot, a, v, n] = QUANTITIES.map(|of| column::<f64>(file, of.name, rows));
-    let (x, x_dot, a, v, n) = (x?, x_dot?, a?, v?, n?);
+    let [x, x_dot, a, v, n, pulling, friction] = QUANTITIES.map(|of| of.name);
+    let reals = |name| column::<f64>(file, name, rows);
+    let (x, x_dot, a, v, n) = (reals(x)?, reals(x_dot)?, reals(a)?, reals(v)?, reals(n)?);
+    let forces = match [pulling, friction]
+        .iter()
+        .any(|name| file.link_exists(name))
+    {
+        true => Some((reals(pulling)?, reals(friction)?)),
+        false => None,
+    };
     let sample = |(i, t): (usize, f64)| {
-        Ok(Sample {
-            t,
-            x: x[i],
+        let state = State {
+            mode: named(&MODES, modes[i])?,
             x_dot: x_dot[i],
             a: a[i],
             v: v[i],
             n: n[i],
-            mode: named(&MODES, modes[i])?,
-        })
+        };
+        // An older trace does not hold the forces; they follow from the rest.
+        let forces = match &forces {
+            Some((pulling, friction)) => Forces {
+                pulling: pulling[i],
+                friction: friction[i],
+            },
+            None => case.forces(state),
+        };
+        Ok(Sample::in_state(t, x[i], state, forces))
     };
     times.into_iter().enumerate().map(sample).collect()
 }

@@ -15,6 +15,7 @@ mod basin;
 mod basins;
 mod critical;
 mod feedback;
+mod forces;
 mod integrator;
 mod letter_vc;
 mod limit;

@@ -313,8 +313,18 @@ fn samples_and_events_are_those_of_the_trace() {
     expect(&folder.run(&["simulate", "case.toml"]), 0, "case.h5");
     let file = File::open(folder.path().join("case.h5")).unwrap();
     let samples = exported(&folder, &["case.h5"]);
-    assert_eq!(samples.names, ["t", "x", "x_dot", "a", "v", "N", "mode"]);
-    for name in ["t", "x", "x_dot", "a", "v", "N"] {
+    let real = [
+        "t",
+        "x",
+        "x_dot",
+        "a",
+        "v",
+        "N",
+        "pulling_force",
+        "friction_force",
+    ];
+    assert_eq!(samples.names, [&real[..], &["mode"]].concat());
+    for name in real {
         assert_eq!(samples.bits(name), numbers(&file, name), "{name}");
     }
     let modes = file.dataset("mode").unwrap().read_raw::<u8>().unwrap();

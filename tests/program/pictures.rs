@@ -430,6 +430,61 @@ fn a_sheet_that_cannot_be_is_refused() {
     expect(&named, 0, "m.88.9mm.no-subtitle.png");
 }
 
+/// A long motion has its switch-on enlarged, and its legend names what is seen.
+#[test]
+fn a_switch_on_is_enlarged_and_legends_name_what_is_seen() {
+    let case = "switch_on = 100\n[fixed]\nv0 = 0.35\nalpha_v = -0.33\ntau = 4.15\n[friction]\n\
+                law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[start]\nx_dot0 = 0\na0 = 0.9\n\
+                [trace]\nuntil = 400\n";
+    let once = "[fixed]\nv0 = 0.35\nviscous = 0.3\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n\
+                mu_s = 0.5\n[start]\nx_dot0 = 0\na0 = 0.2\n[trace]\nuntil = UNTIL\n\
+                interval = 0.5\n";
+    let [brief, long] = ["20", "3000"].map(|until| once.replace("UNTIL", until));
+    let damped = case.replace("[fixed]", "[fixed]\ndamping = 0.02");
+    let folder = Folder::with(&[
+        ("c.toml", case),
+        ("damped.toml", &damped),
+        ("brief.toml", &brief),
+        ("long.toml", &long),
+    ]);
+    for name in ["c", "damped", "brief", "long"] {
+        expect(
+            &folder.run(&["simulate", &format!("{name}.toml")]),
+            0,
+            ".h5",
+        );
+    }
+    let svg = |name: &str, more: &[&str]| {
+        let of = format!("{name}.h5");
+        let args = [&["plot", &of, "-o", "p.svg"], more].concat();
+        expect(&folder.run(&args), 0, "p.svg");
+        text(&folder, "p.svg")
+    };
+    let (framed, marked) = ("framed on the left", "control switched on");
+    let whole = svg("c", &[]);
+    assert!(whole.contains(framed) && whole.contains(marked));
+    // Times of the close-up, from 93.7 to 118.8.
+    assert!(whole.contains("\n105\n"));
+    for (stretch, switched_on) in [
+        (["--from=90", "--to=130"], true),
+        (["--from=1", "--to=99"], false),
+    ] {
+        let part = svg("c", &stretch);
+        assert!(!part.contains(framed), "{stretch:?}");
+        assert_eq!(part.contains(marked), switched_on, "{stretch:?}");
+    }
+    assert!(!svg("c", &["--width=86mm"]).contains(framed));
+    let damped = svg("damped", &[]);
+    assert!(damped.contains("force of spring and dashpot") && !damped.contains("spring force"));
+    let sticks = "the block sticks";
+    assert!(svg("brief", &[]).contains(sticks));
+    assert!(
+        !svg("long", &[]).contains(sticks),
+        "a stick of a quarter of a pixel"
+    );
+    assert!(svg("long", &["--to=20"]).contains(sticks));
+}
+
 /// A stretch of a trace is shown as such, and fits a column without its portrait.
 #[test]
 fn a_stretch_of_a_motion_is_shown() {
@@ -449,8 +504,19 @@ fn a_stretch_of_a_motion_is_shown() {
     assert!(tells(&whole, "60") && !tells(&whole, "33"));
     assert!(tells(&part, "33") && !tells(&part, "60"));
     assert!(whole.contains("elongation a") && whole.contains("even sliding at v"));
+    for named in [
+        "spring force",
+        "friction force",
+        "deviation",
+        "the block sticks",
+    ] {
+        assert!(whole.contains(named), "{named}");
+    }
+    // Plain words have symbols as the letter sets them.
+    assert!(!whole.contains("v0"));
     let column = svg(&["--width=86mm"]);
-    assert!(column.contains("elongation a") && !column.contains("even sliding at v"));
+    assert!(tells(&column, "a") && !column.contains("even sliding at v"));
+    assert!(!column.contains("spring force") && !column.contains("deviation"));
     expect(&folder.run(&["run", "m.toml"]), 0, "m.png");
     for (args, says) in [
         (

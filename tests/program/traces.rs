@@ -70,7 +70,7 @@ fn a_plan_of_a_case_is_what_its_trace_tells() {
     assert_eq!(never["samples_per_step"], 24);
     let planned = json(&folder, &["plan", "case.toml"]);
     assert_eq!(planned["samples"], 41);
-    assert_eq!(planned["bytes"], 41 * 49);
+    assert_eq!(planned["bytes"], 41 * 65);
     assert_eq!(folder.files(), ["case.toml", "never.toml"]);
     expect(&folder.run(&["simulate", "case.toml"]), 0, "case.h5");
     let told = json(&folder, &["info", "case.h5"]);

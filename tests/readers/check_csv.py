@@ -47,7 +47,7 @@ def check_boundaries():
 def check_trace():
     samples = read("samples")
     ds = xr.open_dataset("trace.h5")
-    for name in ["t", "x", "x_dot", "a", "v", "N"]:
+    for name in ["t", "x", "x_dot", "a", "v", "N", "pulling_force", "friction_force"]:
         same(name, samples[name], ds[name])
     same("mode", samples["mode"], words(ds["mode"]))
     events = read("events")

@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-QUANTITIES = ("x", "x_dot", "a", "v", "N")
+QUANTITIES = ("x", "x_dot", "a", "v", "N", "pulling_force", "friction_force")
 
 
 def equal(what, found, expected):

@@ -48,9 +48,9 @@ pub(super) fn draw(of: &FitPicture, scene: &mut Scene) {
     );
     let row = Row {
         scale: y,
-        title: Rich::default().and_formula("friction coefficient  μ_K"),
+        title: vec![Rich::default().and_formula("friction coefficient  μ_K")],
     };
-    let stack = Stack::new(scene, body, x, Rich::plain(&below), vec![row]);
+    let stack = Stack::new(scene, body, x, Rich::plain(&below), &[row]);
     stack.draw_grid(scene);
     if let Some(panel) = stack.panels.first() {
         draw_curve(of, panel, scene);

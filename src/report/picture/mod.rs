@@ -14,7 +14,8 @@
 //! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
 //!   them, and free places on curves
 //! - `fit`: a friction law among the points to which it was fitted
-//! - `trace`, `stack`, `span`: a motion over time, in panels above one another, or a part of it
+//! - `trace`, `strips`, `stack`, `span`: a motion over time, in panels above one another, or a part
+//!   of it; `close_up`: its switch-on, enlarged
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
@@ -41,6 +42,7 @@ mod areas;
 mod boundaries;
 mod choice;
 mod clip;
+mod close_up;
 mod curve_labels;
 mod degrees;
 mod error;
@@ -72,6 +74,7 @@ mod speed;
 mod stable_area;
 mod stable_line;
 mod stack;
+mod strips;
 mod symbols;
 mod text;
 mod thinned;
@@ -124,8 +127,8 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 }
 
 /// Draws the trace of the file `of` for the file `path`, as [`draw`] does a map: velocities,
-/// elongation and the controlled quantity over time, and the velocity over the elongation. Of the
-/// options those about the sheet and its title are used; the default title is the case's.
+/// elongation, forces and the controlled quantity over time, and the velocity over the elongation.
+/// Of the options those about the sheet and its title are used; the default title is the case's.
 ///
 /// # Errors
 /// When the name of the file is not that of a picture, or options have no meaning for a trace.

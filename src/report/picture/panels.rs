@@ -301,6 +301,20 @@ pub(super) fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
     fitting(scale, |_| 1.7 * SMALL * u, height)
 }
 
+/// As [`fitting_up`], but closer where fewer than two would have a label.
+pub(super) fn two_fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
+    let ticks = fitting_up(scale, height, u);
+    let labels = |ticks: &[Tick]| ticks.iter().filter(|tick| tick.label.is_some()).count();
+    if labels(&ticks) > 1 {
+        return ticks;
+    }
+    let closer = fitting(scale, |_| 1.2 * SMALL * u, height);
+    match labels(&closer) > labels(&ticks) {
+        true => closer,
+        false => ticks,
+    }
+}
+
 /// A tick for each name whose number is on the scale.
 fn named(scale: &Scale, names: &[&str]) -> Vec<Tick> {
     let ticks = names.iter().enumerate().map(|(number, name)| Tick {

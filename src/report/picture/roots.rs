@@ -117,10 +117,10 @@ fn draw_plane(picture: &PointPicture, area: Area, scene: &mut Scene) {
     let title = format!("Im λ{}", unit(&units.angular_frequency()));
     let row = Row {
         scale: y,
-        title: Rich::plain(&title),
+        title: vec![Rich::plain(&title)],
     };
     let below = Rich::plain(&format!("Re λ{}", unit(&units.rate())));
-    let stack = Stack::new(scene, area, x, below, vec![row]);
+    let stack = Stack::new(scene, area, x, below, &[row]);
     let Some(panel) = stack.panels.first() else {
         return;
     };
@@ -201,12 +201,12 @@ fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
     let step = value_scale::smallest_step(along.steps.iter().map(|step| step.2 as f64));
     let row = Row {
         scale: Scale::linear(-0.06 * high, 1.1 * high).with_smallest_step(step),
-        title: Rich::plain("number of unstable roots"),
+        title: vec![Rich::plain("number of unstable roots")],
     };
     let unit = suffix(&picture.units.time(), "  (", ")");
     let below = Rich::plain("delay  ").and_symbol(Parameter::Tau).and(&unit);
     let x = Scale::linear(0.0, along.until);
-    let stack = Stack::new(scene, area, x, below, vec![row]);
+    let stack = Stack::new(scene, area, x, below, &[row]);
     let Some(panel) = stack.panels.first() else {
         return;
     };

@@ -1,6 +1,7 @@
 //! The part of a trace that a picture shows.
 
 use super::error::PictureError;
+use super::panels::Panel;
 use crate::answers::Trace;
 use crate::answers::trace::{Sample, TraceEvent};
 use crate::meaning::scale::Scale;
@@ -33,6 +34,24 @@ impl<'t> Span<'t> {
             samples: &trace.samples[begun.min(ended)..ended],
             ends: [from, to],
         })
+    }
+
+    /// A part of it, with a sample more at both ends, where there is one.
+    pub(super) fn part(&self, [from, to]: [f64; 2]) -> Self {
+        let begun = self.samples.partition_point(|sample| sample.t <= from);
+        let ended = self.samples.partition_point(|sample| sample.t < to);
+        let begun = begun.saturating_sub(1);
+        let ended = (ended + 1).min(self.samples.len()).max(begun);
+        Self {
+            trace: self.trace,
+            samples: &self.samples[begun..ended],
+            ends: [from, to],
+        }
+    }
+
+    /// When it begins and ends.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 
     /// When it ends.
@@ -75,5 +94,23 @@ impl<'t> Span<'t> {
         let sticks = self.trace.sticks().into_iter();
         let within = sticks.map(|(from, to)| (from.max(begin), to.min(end)));
         within.filter(|(from, to)| from < to).collect()
+    }
+
+    /// Whether a panel is wide enough for its sticks to be seen: one is a pixel wide, or several
+    /// that lie closer than a pixel are.
+    pub(super) fn sticks_in(&self, panel: &Panel) -> bool {
+        let mut joined: Option<(f64, f64)> = None;
+        for (from, to) in self.sticks() {
+            let (left, right) = (panel.across(from), panel.across(to));
+            let since = match joined {
+                Some((since, last)) if left - last < 1.0 => since,
+                _ => left,
+            };
+            if right.min(panel.area.right) - since.max(panel.area.left) >= 1.0 {
+                return true;
+            }
+            joined = Some((since, right));
+        }
+        false
     }
 }

@@ -246,6 +246,9 @@ fn lines_and_what_lies_below_them() {
     let of_traces = [
         ("velocity", colour::of_line(0, 3)),
         ("pulling velocity", colour::of_line(2, 3)),
+        ("spring force", colour::PULLING_FORCE),
+        ("friction force", colour::FRICTION_FORCE),
+        ("marks", colour::SOFT_INK),
         ("sticks", colour::STUCK),
         ("paper", PAPER),
         ("lift-off", UNSTABLE[3]),

@@ -1,5 +1,7 @@
 //! A motion over time, and its velocity over the elongation.
 
+use super::clip;
+use super::close_up::CloseUp;
 use super::error::PictureError;
 use super::legend::{Legend, Swatch};
 use super::options::PictureOptions;
@@ -8,6 +10,7 @@ use super::panels::{Panel, roomy};
 use super::scene::Scene;
 use super::span::Span;
 use super::stack::{Row, Stack};
+use super::strips::{self, Strip, Value, WIDTH, scale};
 use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
 use super::thinned::{apart, by_columns};
@@ -19,7 +22,6 @@ use crate::setting::{CaseSpec, Parameter};
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
 
-const WIDTH: f64 = 2.6;
 /// Width of the line at a switch-on or a lift-off.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
@@ -31,22 +33,8 @@ const OVER_TIME: f64 = 0.655;
 const WIDE: f64 = 1200.0;
 /// The most points of the phase portrait, counted from the end: older ones would be covered.
 const MOST_PORTRAIT: usize = 30_000;
-
-/// The value of a sample that a curve shows.
-type Value = fn(&Sample) -> f64;
-
-/// A curve over time.
-struct Curve {
-    of: Value,
-    colour: Rgb,
-    name: &'static str,
-}
-
-/// A panel over time.
-struct Strip {
-    title: String,
-    curves: Vec<Curve>,
-}
+/// Space above the legend and around the portrait.
+const APART: f64 = 20.0;
 
 /// Draws a trace of a case.
 pub(super) fn draw(
@@ -67,45 +55,69 @@ pub(super) fn draw(
     let notes = options.subtitle(notes(spec, trace, &span));
     let mut body = page::head(scene, title, &notes);
     let u = scene.unit();
-    let strips = strips(spec);
     let settled = Some(settled(spec, trace)).filter(|t| span.holds(*t));
-    let wide = body.width() >= WIDE * u;
-    let mut legend = Legend::default();
-    if !options.no_legend {
-        legend.entries = entries(&span, settled, &strips);
-        if wide {
-            let portrait = [sliding(spec, span.samples)];
-            legend.entries.extend(symbols::entries(&portrait));
-        }
-    }
-    if !wide {
-        let width = legend.width(u);
-        let column = body.cut_right(width, if width > 0.0 { 24.0 * u } else { 0.0 });
-        draw_strips(spec, (&span, settled), &strips, body, scene)?;
-        legend.draw(scene, column);
-        return Ok(());
-    }
-    let middle = body.left + OVER_TIME * body.width();
-    let over_time = Area {
-        right: middle - 10.0 * u,
-        ..body
+    let over_time = OverTime {
+        span,
+        settled,
+        strips: strips::fitting(spec, trace.summary.outcome, &span, body.height() / u),
+        below: Rich::plain(&format!("time t{}", suffix(&spec.units.time(), "  (", ")"))),
     };
-    let beside = Area {
+    if body.width() >= WIDE * u {
+        return draw_wide(spec, options, &over_time, body, scene);
+    }
+    let legend = |seen: &[&Panel]| over_time.legend(options, seen);
+    let width = legend(&[]).width(u);
+    let column = body.cut_right(width, if width > 0.0 { 24.0 * u } else { 0.0 });
+    let stack = over_time.stack(body, scene);
+    over_time.draw(&stack, None, scene)?;
+    legend(&stack.panels.iter().collect::<Vec<_>>()).draw(scene, column);
+    Ok(())
+}
+
+/// Draws the panels over time, and what has room beside them.
+fn draw_wide(
+    spec: &CaseSpec,
+    options: &PictureOptions,
+    over_time: &OverTime,
+    body: Area,
+    scene: &mut Scene,
+) -> Result<(), PictureError> {
+    let u = scene.unit();
+    let middle = body.left + OVER_TIME * body.width();
+    let stack = over_time.stack(
+        Area {
+            right: middle - 10.0 * u,
+            ..body
+        },
+        scene,
+    );
+    let mut beside = Area {
         left: middle + 14.0 * u,
         ..body
     };
-    draw_strips(spec, (&span, settled), &strips, over_time, scene)?;
-    let portrait = Area {
-        bottom: body.bottom - legend.height(u) - 20.0 * u,
-        ..beside
+    let samples = over_time.span.samples;
+    let portrait = [sliding(spec, samples)];
+    let legend = |seen: &[&Panel]| {
+        let mut legend = over_time.legend(options, seen);
+        if !options.no_legend {
+            legend.entries.extend(symbols::entries(&portrait));
+        }
+        legend
     };
-    draw_portrait(spec, span.samples, portrait, scene);
+    let height = legend(&[]).height(u);
+    beside.bottom -= height + APART * u;
+    let close_up = CloseUp::of(spec, over_time, &mut beside, scene);
+    over_time.draw(&stack, close_up.as_ref(), scene)?;
+    draw_portrait(spec, samples, beside, scene);
     let column = Area {
         left: beside.left + 60.0 * u,
-        top: portrait.bottom + 20.0 * u,
+        top: beside.bottom + APART * u,
+        bottom: body.bottom,
         ..beside
     };
-    legend.draw(scene, column);
+    let panels = close_up.iter().flat_map(|close_up| &close_up.stack.panels);
+    let seen: Vec<&Panel> = stack.panels.iter().chain(panels).collect();
+    legend(&seen).draw(scene, column);
     Ok(())
 }
 
@@ -126,6 +138,7 @@ fn notes(spec: &CaseSpec, trace: &Trace, span: &Span) -> Vec<Rich> {
     }
     let time = |t: f64| format!("{}{}", number(t), suffix(&units.time(), " ", ""));
     let summary = &trace.summary;
+    let became = Rich::plain("outcome: ");
     let became = match summary.outcome {
         Outcome::Sliding => {
             let settled = settled(spec, trace);
@@ -133,16 +146,14 @@ fn notes(spec: &CaseSpec, trace: &Trace, span: &Span) -> Vec<Rich> {
                 true => ", later than is shown",
                 false => "",
             };
-            format!(
-                "outcome: sliding, within 1 % of v0 from t = {} on{later}",
-                time(settled)
-            )
+            let from = format!(" from t = {} on{later}", time(settled));
+            became.and_formula("sliding, within 1 % of v_0").and(&from)
         }
-        Outcome::StickSlip => format!("outcome: stick-slip, period {}", time(summary.period)),
-        Outcome::LiftOff => format!("outcome: lift-off at t = {}", time(summary.decided)),
-        other => format!("outcome: {}", other.name()),
+        Outcome::StickSlip => became.and(&format!("stick-slip, period {}", time(summary.period))),
+        Outcome::LiftOff => became.and(&format!("lift-off at t = {}", time(summary.decided))),
+        other => became.and(other.name()),
     };
-    notes.push(Rich::plain(&became));
+    notes.push(became);
     notes
 }
 
@@ -154,76 +165,102 @@ fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
     switched_on.unwrap_or(0.0) + trace.summary.settle_time
 }
 
-/// The panels over time. The last one shows the controlled quantity, if there is one.
-fn strips(spec: &CaseSpec) -> Vec<Strip> {
-    let [dark, light] = [colour::of_line(0, 3), colour::of_line(2, 3)];
-    let curve = |of, colour, name| Curve { of, colour, name };
-    let units = &spec.units;
-    let unit = |dimension| suffix(&units.of(dimension), "  (", ")");
-    let velocity: Value = |s| s.v;
-    let mut strips = vec![
-        Strip {
-            title: format!("velocities ẋ, v{}", unit([0, 1, -1])),
-            curves: vec![
-                curve(velocity, light, "pulling velocity v"),
-                curve(|s| s.x_dot, dark, "velocity of the block ẋ"),
-            ],
-        },
-        Strip {
-            title: format!("elongation a{}", unit([0, 1, 0])),
-            curves: vec![curve(|s| s.a, dark, "")],
-        },
-    ];
-    let control = spec.setting.control();
-    if control.alpha_n != 0.0 {
-        strips.push(Strip {
-            title: format!("load N{}", unit([1, 0, 0])),
-            curves: vec![curve(|s| s.n, dark, "")],
-        });
-    } else if control.alpha_v != 0.0 {
-        strips.push(Strip {
-            title: format!("pulling velocity v{}", unit([0, 1, -1])),
-            curves: vec![curve(velocity, light, "")],
-        });
-    }
-    strips
+/// The panels over a stretch of time, and what is marked in them.
+pub(super) struct OverTime<'t> {
+    /// The stretch.
+    pub span: Span<'t>,
+    /// When the velocity has settled, if that is shown.
+    pub settled: Option<f64>,
+    /// The panels.
+    pub strips: Vec<Strip>,
+    /// The title of time.
+    pub below: Rich,
 }
 
-fn draw_strips(
-    spec: &CaseSpec,
-    (span, settled): (&Span, Option<f64>),
-    strips: &[Strip],
-    area: Area,
-    scene: &mut Scene,
-) -> Result<(), PictureError> {
-    let samples = span.samples;
+impl OverTime<'_> {
+    /// Lays out its panels.
+    pub(super) fn stack(&self, area: Area, scene: &Scene) -> Stack {
+        let rows: Vec<Row> = self.strips.iter().map(Strip::row).collect();
+        Stack::new(scene, area, self.span.scale(), self.below.clone(), &rows)
+    }
+
+    /// Draws its panels, with a frame around what a close-up shows of the first.
+    pub(super) fn draw(
+        &self,
+        stack: &Stack,
+        close_up: Option<&CloseUp>,
+        scene: &mut Scene,
+    ) -> Result<(), PictureError> {
+        roomy(&stack.panels, scene)?;
+        for panel in &stack.panels {
+            shade_sticks(panel, &self.span, scene);
+        }
+        stack.draw_grid(scene);
+        for (panel, strip) in stack.panels.iter().zip(&self.strips) {
+            for event in self.span.marked() {
+                mark(panel, event.t, mark_colour(event.kind), DASH, scene);
+            }
+            if let Some(settled) = self.settled {
+                mark(panel, settled, SOFT_INK, SETTLED, scene);
+            }
+            draw_curves(panel, strip, &self.span, scene);
+        }
+        if let (Some(close_up), Some(panel)) = (close_up, stack.panels.first()) {
+            close_up.frame(panel, scene);
+        }
+        stack.draw_axes(scene);
+        Ok(())
+    }
+
+    /// What is seen in some panels; without panels, all that may be.
+    fn legend(&self, options: &PictureOptions, seen: &[&Panel]) -> Legend {
+        let mut legend = Legend::default();
+        if options.no_legend {
+            return legend;
+        }
+        let entries = &mut legend.entries;
+        for strip in &self.strips {
+            let named = strip.curves.iter().rev().filter(|c| !c.name.is_empty());
+            let entry = |c: &strips::Curve| {
+                let name = Rich::plain(c.name);
+                (Swatch::Line(c.colour, c.width, None), name)
+            };
+            entries.extend(named.map(entry));
+        }
+        let sticks = match seen {
+            [] => !self.span.sticks().is_empty(),
+            panels => panels.iter().any(|panel| self.span.sticks_in(panel)),
+        };
+        if sticks {
+            entries.push((Swatch::Box(STUCK), Rich::plain("the block sticks")));
+        }
+        for event in self.span.marked() {
+            let text = match event.kind {
+                Event::LiftOff => "lift-off",
+                _ => "control switched on",
+            };
+            let swatch = Swatch::Dashed(mark_colour(event.kind), MARK_WIDTH, DASH);
+            entries.push((swatch, Rich::plain(text)));
+        }
+        if self.settled.is_some() {
+            let swatch = Swatch::Dashed(SOFT_INK, MARK_WIDTH, SETTLED);
+            let words = Rich::default().and_formula("from here within 1 % of v_0");
+            entries.push((swatch, words));
+        }
+        legend
+    }
+}
+
+/// Draws the curves of a strip, as far as they lie in its panel.
+fn draw_curves(panel: &Panel, strip: &Strip, span: &Span, scene: &mut Scene) {
     let u = scene.unit();
-    let row = |strip: &Strip| Row {
-        scale: scale(strip.curves.iter().map(|c| c.of), samples),
-        title: Rich::plain(&strip.title),
-    };
-    let below = format!("time t{}", suffix(&spec.units.time(), "  (", ")"));
-    let rows = strips.iter().map(row).collect();
-    let stack = Stack::new(scene, area, span.scale(), Rich::plain(&below), rows);
-    roomy(&stack.panels, scene)?;
-    for panel in &stack.panels {
-        shade_sticks(panel, span, scene);
-    }
-    stack.draw_grid(scene);
-    for (panel, strip) in stack.panels.iter().zip(strips) {
-        for event in span.marked() {
-            mark(panel, event.t, mark_colour(event.kind), DASH, scene);
-        }
-        if let Some(settled) = settled {
-            mark(panel, settled, SOFT_INK, SETTLED, scene);
-        }
-        for curve in &strip.curves {
-            let points = samples.iter().map(|s| panel.at(s.t, (curve.of)(s)));
-            scene.path(by_columns(points), curve.colour, WIDTH * u);
+    for curve in &strip.curves {
+        let samples = span.samples.iter();
+        let points = by_columns(samples.map(|s| panel.at(s.t, (curve.of)(s))));
+        for part in clip::within(&points, panel.area) {
+            scene.path(part, curve.colour, curve.width * u);
         }
     }
-    stack.draw_axes(scene);
-    Ok(())
 }
 
 fn mark(panel: &Panel, t: f64, colour: Rgb, dash: (f64, f64), scene: &mut Scene) {
@@ -251,14 +288,15 @@ fn draw_portrait(spec: &CaseSpec, samples: &[Sample], area: Area, scene: &mut Sc
     let u = scene.unit();
     let units = &spec.units;
     let unit = |dimension| suffix(&units.of(dimension), "  (", ")");
-    let (elongation, velocity): (Value, Value) = (|s| s.a, |s| s.x_dot);
-    let x = scale([elongation].into_iter(), samples);
+    let [x, y] = portrait_scales(samples);
     let row = Row {
-        scale: scale([velocity].into_iter(), samples),
-        title: Rich::plain(&format!("velocity ẋ{}", unit([0, 1, -1]))),
+        scale: y,
+        title: ["velocity".to_owned(), format!("ẋ{}", unit([0, 1, -1]))]
+            .map(|text| Rich::plain(&text))
+            .into(),
     };
     let below = Rich::plain(&format!("elongation a{}", unit([0, 1, 0])));
-    let stack = Stack::new(scene, area, x, below, vec![row]);
+    let stack = Stack::new(scene, area, x, below, &[row]);
     stack.draw_grid(scene);
     if let Some(panel) = stack.panels.first() {
         let points = samples.iter().map(|s| panel.at(s.a, s.x_dot));
@@ -271,81 +309,16 @@ fn draw_portrait(spec: &CaseSpec, samples: &[Sample], area: Area, scene: &mut Sc
     stack.draw_axes(scene);
 }
 
-/// The scale that holds all values, with a little room around them.
-fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for of in of {
-        let values = samples.iter().map(of);
-        (low, high) = values.fold((low, high), |(l, h), v| (l.min(v), h.max(v)));
-    }
-    if low > high {
-        return Scale::linear(0.0, 1.0);
-    }
-    // A constant is drawn in the middle.
-    let least = 1e-6 * high.abs().max(low.abs());
-    let room = match high - low {
-        span if span > least => 0.06 * span,
-        _ if high == 0.0 => 1.0,
-        _ => 0.1 * high.abs(),
-    };
-    Scale::linear(low - room, high + room)
-}
-
-/// What stands in the legend of the panels over time.
-fn entries(span: &Span, settled: Option<f64>, strips: &[Strip]) -> Vec<(Swatch, Rich)> {
-    let curves = strips.iter().flat_map(|strip| &strip.curves).rev();
-    let named = curves.filter(|curve| !curve.name.is_empty());
-    let mut entries: Vec<(Swatch, Rich)> = named
-        .map(|c| (Swatch::Line(c.colour, WIDTH, None), Rich::plain(c.name)))
-        .collect();
-    if !span.sticks().is_empty() {
-        entries.push((Swatch::Box(STUCK), Rich::plain("the block sticks")));
-    }
-    for event in span.marked() {
-        let text = match event.kind {
-            Event::LiftOff => "lift-off",
-            _ => "control switched on",
-        };
-        let swatch = Swatch::Dashed(mark_colour(event.kind), MARK_WIDTH, DASH);
-        entries.push((swatch, Rich::plain(text)));
-    }
-    if settled.is_some() {
-        let swatch = Swatch::Dashed(SOFT_INK, MARK_WIDTH, SETTLED);
-        let words = Rich::default().and_formula("from here within 1 % of v_0");
-        entries.push((swatch, words));
-    }
-    entries
+/// The scales of elongation and velocity.
+fn portrait_scales(samples: &[Sample]) -> [Scale; 2] {
+    let of: [Value; 2] = [Box::new(|s| s.a), Box::new(|s| s.x_dot)];
+    of.map(|of| scale(std::iter::once(&of), samples))
 }
 
 /// The place of steady sliding in the portrait, if it lies inside.
 fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
-    let scales: [Value; 2] = [|s| s.a, |s| s.x_dot];
-    let [x, y] = scales.map(|of| scale([of].into_iter(), samples));
+    let [x, y] = portrait_scales(samples);
     let place = symbols::sliding(&spec.setting);
     let held = place.filter(|(a, v0)| x.holds(*a) && y.holds(*v0));
     held.map(|at| (Symbol::Sliding, at)).into_iter().collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_does_not_vary_has_a_scale() {
-        let sample = Sample {
-            t: 0.0,
-            x: 0.0,
-            x_dot: 0.0,
-            a: 0.0,
-            v: 1.0,
-            n: 2.0,
-            mode: crate::slip::motion::Mode::Stick,
-        };
-        let of: [Value; 2] = [|s| s.a, |s| s.n];
-        for (of, value) in of.into_iter().zip([0.0, 2.0]) {
-            let scale = scale([of].into_iter(), &[sample]);
-            assert!((scale.part(value) - 0.5).abs() < 1e-12);
-        }
-        assert!(scale(of.into_iter(), &[]).holds(0.5));
-    }
 }

@@ -53,7 +53,7 @@ pub(crate) const TIME: Quantity = Quantity {
 };
 
 /// The quantities in the order of the file.
-pub(crate) const QUANTITIES: [Quantity; 5] = [
+pub(crate) const QUANTITIES: [Quantity; 7] = [
     Quantity {
         name: "x",
         long_name: "position of the block",
@@ -83,6 +83,18 @@ pub(crate) const QUANTITIES: [Quantity; 5] = [
         long_name: "normal load",
         dimension: [1, 0, 0],
         of: |s| s.n,
+    },
+    Quantity {
+        name: "pulling_force",
+        long_name: "force of the spring, and of the dashpot beside it, on the block",
+        dimension: [1, 0, 0],
+        of: |s| s.pulling_force,
+    },
+    Quantity {
+        name: "friction_force",
+        long_name: "friction force on the block, positive backwards",
+        dimension: [1, 0, 0],
+        of: |s| s.friction_force,
     },
 ];
 
