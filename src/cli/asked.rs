@@ -22,10 +22,14 @@ pub(super) struct Asked {
 
 impl Asked {
     /// The setting of a system from a file, which `value` of the flag `flag` names.
-    pub(super) fn of_system(setting: Setting, flag: &'static str, value: String) -> Self {
+    pub(super) fn of_system(
+        (setting, units): (Setting, Units),
+        flag: &'static str,
+        value: String,
+    ) -> Self {
         Self {
             setting,
-            units: Units::default(),
+            units,
             named: Some((flag, value)),
         }
     }
@@ -40,7 +44,12 @@ impl Asked {
         let set: BTreeMap<&str, f64> = own.map(|(own, value)| (&*own.name, value)).collect();
         let inputs = Inputs::default().and(flag, value).and("set", set);
         let others = setting.others().iter().filter(|p| wanted(p.name()));
-        others.fold(inputs, |inputs, p| inputs.and(p.name(), setting.get(*p)))
+        let inputs = others.fold(inputs, |inputs, p| inputs.and(p.name(), setting.get(*p)));
+        // A map says its own.
+        match *flag != "map" && !units.dimensionless() {
+            true => inputs.and("units", &units.force_length_time),
+            false => inputs,
+        }
     }
 
     /// The value of a quantity that a flag gives, in its range.

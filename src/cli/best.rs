@@ -220,7 +220,9 @@ impl Args {
             }
         }
         let flag = |parameter| self.parameters.given(parameter);
-        let asked = self.system.read_but_delay(self.parameters.sets(), flag)?;
+        let asked = self
+            .system
+            .read_but_delay(self.parameters.sets(), &Units::default(), flag)?;
         let asked = asked.ok_or_else(|| Failure::bad_input("--system is not given"))?;
         let searched = self.searched(&asked.setting)?;
         let delay = !asked.setting.get(Parameter::Tau).is_nan();

@@ -101,13 +101,16 @@ impl CellArgs {
         Ok(self.read.get())
     }
 
-    /// The setting of the cell, if the map is of a system from a file.
-    pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
+    /// The setting of the cell and its units, if the map is of a system from a file.
+    pub(super) fn of_system(&self) -> Result<Option<(Setting, Units)>, Failure> {
         let Some(plan) = self.plan()? else {
             return Ok(None);
         };
         match plan.spec.fixed.system() {
-            Some(_) => Ok(Some(plan.setting(&self.index(plan)?))),
+            Some(_) => Ok(Some((
+                plan.setting(&self.index(plan)?),
+                plan.spec.units.clone(),
+            ))),
             None => Ok(None),
         }
     }

@@ -266,17 +266,22 @@ impl<A: Asks> ParameterArgs<A> {
 
     /// Whether any flag is given besides those of `these` parameters.
     pub(super) fn any_but(&self, these: &[Parameter]) -> bool {
+        self.law.units.is_some() || self.any_but_units(these)
+    }
+
+    /// Whether any flag is given besides that of units and those of `these` parameters.
+    pub(super) fn any_but_units(&self, these: &[Parameter]) -> bool {
         let given = |p: Parameter| !these.contains(&p) && self.given(p).is_some();
         let LawArgs {
             friction,
             table,
-            units,
+            units: _,
             sets: _,
             // They are given with a table only.
             columns: _,
             speed_unit: _,
         } = &self.law;
-        let flags = friction.is_some() || table.is_some() || units.is_some();
+        let flags = friction.is_some() || table.is_some();
         flags || Parameter::ALL.into_iter().any(given)
     }
 

@@ -9,6 +9,7 @@ use crate::model::stop::Stop;
 use crate::report::picture::{self, Picture, PointPicture};
 use crate::setting::Parameter;
 use crate::setting::amount::Amount;
+use crate::setting::system::SPEEDS;
 use crate::setting::units::Units;
 use crate::text::Shown;
 
@@ -36,6 +37,11 @@ pub(super) struct Args {
     point: PointArgs,
     #[command(flatten)]
     system: SystemArgs,
+    /// With --system and --units, in the place of --tau: the speed of the rotation whose period the
+    /// delay is, in revolutions per minute
+    #[arg(long, value_name = "RPM", allow_hyphen_values = true, requires = "system",
+          value_parser = parse_rpm)]
+    rpm: Option<f64>,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
@@ -59,6 +65,13 @@ fn parse_roots(text: &str) -> Result<u8, String> {
     count.ok_or_else(|| "expected a whole number from 1 to 64".to_owned())
 }
 
+fn parse_rpm(text: &str) -> Result<f64, String> {
+    let [least, most] = SPEEDS;
+    let speed = text.trim().parse().ok();
+    let speed = speed.filter(|speed| (least..=most).contains(speed));
+    speed.ok_or_else(|| "expected a number greater than 0, such as 3000".to_owned())
+}
+
 impl Args {
     /// The real part of the line to the right of which roots are counted.
     fn line(&self, units: &Units) -> Result<Option<f64>, Failure> {
@@ -79,8 +92,9 @@ impl Args {
         let of_system = match &self.system.system {
             Some(_) => {
                 self.point.check_alone("--system", &OTHERS)?;
+                let (sets, units) = (self.point.sets(), self.point.units());
                 self.system
-                    .read(self.point.sets(), |p| self.point.given(p))?
+                    .read(sets, &units, self.rpm, |p| self.point.given(p))?
             }
             None => self.point.cell_of_system()?,
         };

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::setting::Parameter;
 use crate::setting::point_file::PointOf;
+use crate::setting::units::Units;
 
 use super::asked::Asked;
 use super::cell::{CellArgs, alone};
@@ -48,11 +49,16 @@ impl PointArgs {
         self.parameters.given(parameter)
     }
 
+    /// The units of all numbers.
+    pub(super) fn units(&self) -> Units {
+        self.parameters.units()
+    }
+
     /// Checks that beside the flag `with`, which gives the rest, there are only the flags of the
-    /// parameters `but`.
+    /// parameters `but`, and units.
     pub(super) fn check_alone(&self, with: &str, but: &[Parameter]) -> Result<(), Failure> {
         let others = self.cell.map.is_some() || self.file.is_given();
-        alone(with, others || self.parameters.any_but(but))?;
+        alone(with, others || self.parameters.any_but_units(but))?;
         self.parameters.refuse_units()
     }
 

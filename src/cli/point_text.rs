@@ -6,8 +6,9 @@ use crate::explore::margin_kind::MarginKind;
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::explore::stability::{Spectrum, Stability};
 use crate::report::numbers::unit_behind;
+use crate::setting::system::{SpeedAxis, Turn};
 use crate::setting::units::Units;
-use crate::setting::{Field, Parameter, Setting};
+use crate::setting::{Field, Parameter};
 use crate::text::{Shown, finite};
 
 use super::asked::{Asked, subject};
@@ -107,18 +108,27 @@ pub(super) fn print(
         Point::Block(point) => {
             print_block(point, asked, digits, &mut row)?;
             let with = (units, digits, "1/sqrt(M/kappa)");
-            print_stability(stability, true, with, &mut row)?;
+            print_stability(stability, true, with, None, &mut row)?;
             if let Some(fit) = &point.margins.fit {
                 row("fit", of_fit(fit, &point.margins, units))?;
             }
             tell_dimensionless(out, units)
         }
         Point::System(point) => {
-            print_system(point, &asked.setting, digits, &mut row)?;
+            print_system(point, asked, digits, &mut row)?;
             let with = (units, digits, "1");
-            print_stability(stability, point.line_of_delays, with, &mut row)
+            let speed = speed_of(asked);
+            print_stability(stability, point.line_of_delays, with, speed, &mut row)
         }
     }
+}
+
+/// The speed of the rotation whose period the delay is, and how it follows from the delay.
+type Speed<'a> = Option<(&'a SpeedAxis, Turn)>;
+
+/// The speed of a system from a file; none for all else, and without a known unit of time.
+fn speed_of(Asked { setting, units, .. }: &Asked) -> Speed<'_> {
+    setting.system()?.speed(units)
 }
 
 /// What follows from the friction law of the block: the slope and the coefficient at v0, and the
@@ -148,10 +158,11 @@ fn print_block(
 /// What is told of a system from a file besides its stability.
 fn print_system(
     point: &SystemPoint,
-    setting: &Setting,
+    asked: &Asked,
     digits: Digits,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
+    let Asked { setting, units, .. } = asked;
     for (name, text) in setting.system().iter().flat_map(|s| s.expressions()) {
         row(name, text.split_whitespace().collect::<Vec<_>>().join(" "))?;
     }
@@ -160,7 +171,13 @@ fn print_system(
         row(&own.name, format!("{}{unit}", Shown(value)))?;
     }
     for parameter in setting.others() {
-        row(parameter.name(), Shown(setting.get(*parameter)).to_string())?;
+        let unit = unit_behind(&units.of_parameter(*parameter));
+        let value = Shown(setting.get(*parameter));
+        row(parameter.name(), format!("{value}{unit}"))?;
+    }
+    if let Some((speed, turn)) = speed_of(asked).filter(|_| point.tau > 0.0) {
+        let (value, unit) = (digits.of(turn.over(point.tau)), speed.unit.name());
+        row(&speed.name, format!("{value} {unit}"))?;
     }
     if !point.line_of_delays {
         row(
@@ -181,6 +198,7 @@ fn print_stability(
     stability: &Stability,
     line_of_delays: bool,
     (units, digits, scale): (&Units, Digits, &str),
+    speed: Speed,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let or_unknown = |n: Option<u64>| n.map_or("unknown".into(), |n| n.to_string());
@@ -221,7 +239,7 @@ fn print_stability(
         )?;
     }
     if line_of_delays {
-        print_delays(stability, (units, digits), &mut row)?;
+        print_delays(stability, (units, digits), speed, &mut row)?;
     }
     print_spectrum(spectrum, (units, digits, scale), &mut row)
 }
@@ -256,13 +274,17 @@ fn print_rightmost(
     Ok(())
 }
 
-/// The stable delays of the point's line, and its crossings.
+/// The stable delays of the point's line, as speeds as well, and its crossings.
 fn print_delays(
     stability: &Stability,
     (units, digits): (&Units, Digits),
+    speed: Speed,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     print_intervals(stability, (units, digits), &mut row)?;
+    if let Some(speed) = speed {
+        print_speeds(stability, speed, digits, &mut row)?;
+    }
     let time = unit_behind(&units.time());
     for crossing in stability.crossings.iter().flatten() {
         let direction = match crossing.direction {
@@ -309,4 +331,26 @@ fn print_intervals(
             format!("and {more} further intervals (--json lists them)"),
         ),
     }
+}
+
+/// The stable delays as speeds, in the order of the delays.
+fn print_speeds(
+    stability: &Stability,
+    (speed, turn): (&SpeedAxis, Turn),
+    digits: Digits,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let (name, unit) = (&speed.name, speed.unit.name());
+    let intervals = stability.stable_delays.iter().flatten();
+    for &[from, to] in intervals.take(INTERVALS_SHOWN) {
+        let [slowest, fastest] = [to, from].map(|delay| digits.of(turn.over(delay)));
+        let text = match (to.is_finite(), from > 0.0) {
+            (true, true) => format!("{slowest} {unit} < {name} < {fastest} {unit}"),
+            (true, false) => format!("{name} > {slowest} {unit}"),
+            (false, true) => format!("{name} < {fastest} {unit}"),
+            (false, false) => "all".into(),
+        };
+        row("stable speeds", text)?;
+    }
+    Ok(())
 }

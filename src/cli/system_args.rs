@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::setting::quantity::Quantity;
-use crate::setting::system::{SystemModel, shipped};
+use crate::setting::system::{SpeedUnit, SystemModel, shipped};
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
-use crate::text::SpecError;
 use crate::text::nearest::did_you_mean;
+use crate::text::{Shown, SpecError};
 
 use super::asked::Asked;
 use super::failure::Failure;
@@ -43,15 +43,22 @@ pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
 pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
 
 impl SystemArgs {
-    /// The system at its setting, with its own parameters in `sets`; none without a system. `flag`
-    /// gives the value of the flag for one of [`OTHERS`].
+    /// The system at its setting in `units`, with its own parameters in `sets`; none without a
+    /// system. `flag` gives the value of the flag for one of [`OTHERS`]; the delay may be given as
+    /// a speed `rpm` > 0.
     pub(super) fn read(
         &self,
         sets: &SetArgs,
+        units: &Units,
+        rpm: Option<f64>,
         flag: impl Fn(Parameter) -> Option<f64>,
     ) -> Result<Option<Asked>, Failure> {
         let tau = Parameter::Tau;
-        match self.read_but_delay(sets, flag)? {
+        let mut found = self.read_but_delay(sets, units, flag)?;
+        if let (Some(asked), Some(rpm)) = (&mut found, rpm) {
+            put_speed(asked, rpm)?;
+        }
+        match found {
             Some(asked) if asked.setting.get(tau).is_nan() => Err(Failure::bad_input_with_help(
                 "--tau is not given",
                 format!("--tau: {}, {}", tau.long_name(), tau.allowed()),
@@ -65,6 +72,7 @@ impl SystemArgs {
     pub(super) fn read_but_delay(
         &self,
         sets: &SetArgs,
+        units: &Units,
         flag: impl Fn(Parameter) -> Option<f64>,
     ) -> Result<Option<Asked>, Failure> {
         let Some(named) = &self.system else {
@@ -74,10 +82,13 @@ impl SystemArgs {
         let mut setting = Setting::of_system(Arc::clone(&model));
         let mut others = OTHERS.map(flag);
         for set in sets.each()? {
-            // Numbers with units were refused.
-            let value = set.value(&Units::default())?;
             let own = model.parameters.iter().find(|own| own.name == set.name);
             let other = OTHERS.into_iter().position(|p| p.name() == set.name);
+            let of_other = other.map(|other| OTHERS[other].dimension());
+            let dimension = own.map(|own| own.dimension).or(of_other);
+            let fits = dimension.map_or(Ok(()), |dimension| set.amount.check(dimension));
+            fits.map_err(|error| set.refused(error))?;
+            let value = set.value(units)?;
             match (own, other) {
                 (Some(own), _) => {
                     let value = own.check(value);
@@ -104,8 +115,38 @@ impl SystemArgs {
             let value = checked.map_err(|e| Failure::out_of_range(&format!("--{name}"), &e))?;
             setting.set(parameter, value);
         }
-        Ok(Some(Asked::of_system(setting, "system", named.clone())))
+        let of = (setting, units.clone());
+        Ok(Some(Asked::of_system(of, "system", named.clone())))
     }
+}
+
+/// Sets the delay of a system to the period of the speed `rpm` > 0.
+fn put_speed(asked: &mut Asked, rpm: f64) -> Result<(), Failure> {
+    let tau = Parameter::Tau;
+    let model = asked.setting.system();
+    if model.is_none_or(|model| model.speed_axis.is_none()) {
+        return Err(Failure::bad_input_with_help(
+            "--rpm: the delay of this system is not the period of a rotation",
+            "give --tau; a speed_axis in the file of a system says that it is one",
+        ));
+    }
+    if !asked.setting.get(tau).is_nan() {
+        return Err(Failure::bad_input_with_help(
+            "tau is given twice: --rpm gives it as a speed",
+            "give either --tau or --rpm",
+        ));
+    }
+    let turn = SpeedUnit::RevolutionsPerMinute.turn(&asked.units);
+    let turn = turn.map_err(|error| {
+        Failure::bad_input_with_help(
+            format!("--rpm {}: {}", Shown(rpm), error.message),
+            "say in which units the system's numbers are, as in --units SI; or give --tau",
+        )
+    })?;
+    let period = tau.check(turn.over(rpm));
+    let period = period.map_err(|error| Failure::out_of_range("--rpm", &error))?;
+    asked.setting.set(tau, period);
+    Ok(())
 }
 
 fn unknown(name: &str, model: &SystemModel) -> Failure {

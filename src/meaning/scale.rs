@@ -2,7 +2,7 @@
 
 use super::ticks::{self, Tick};
 use crate::model::elementary::{ln, log10, pow, power};
-use crate::setting::system::SpeedUnit;
+use crate::setting::system::Turn;
 
 /// Relative agreement of the ratios of neighbouring values on a logarithmic axis.
 const SAME_RATIO: f64 = 1e-6;
@@ -19,7 +19,7 @@ enum Spread {
     /// Equal ratios.
     Logarithmic,
     /// The values are periods, evenly spaced in their speed.
-    Speed(SpeedUnit),
+    Speed(Turn),
 }
 
 /// A scale between two values.
@@ -57,11 +57,11 @@ impl Scale {
 
     /// The scale of the speeds of the periods `values`, the slowest to the left; none where fewer
     /// than two are positive. A period of 0 has no place on it.
-    pub(crate) fn of_speeds(values: &[f64], unit: SpeedUnit) -> Option<Self> {
+    pub(crate) fn of_speeds(values: &[f64], turn: Turn) -> Option<Self> {
         let positive: Vec<f64> = values.iter().copied().filter(|v| *v > 0.0).collect();
         let (from, to) = ends(&positive);
         has_speeds(values).then_some(Self {
-            spread: Spread::Speed(unit),
+            spread: Spread::Speed(turn),
             from,
             to,
             smallest_step: 0.0,
@@ -115,9 +115,9 @@ impl Scale {
         match self.spread {
             Spread::Logarithmic => ln(value / self.from) / ln(self.to / self.from),
             Spread::Linear => (value - self.from) / (self.to - self.from),
-            Spread::Speed(unit) => {
-                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
-                let speed = unit.speed(value.max(f64::MIN_POSITIVE));
+            Spread::Speed(turn) => {
+                let (slowest, fastest) = (turn.over(self.to), turn.over(self.from));
+                let speed = turn.over(value.max(f64::MIN_POSITIVE));
                 // Everything faster than the scale is put just beyond its end.
                 ((speed - slowest) / (fastest - slowest)).min(FASTER)
             }
@@ -129,10 +129,10 @@ impl Scale {
         match self.spread {
             Spread::Logarithmic => self.from * pow(self.to / self.from, part),
             Spread::Linear => self.from + (self.to - self.from) * part,
-            Spread::Speed(unit) => {
-                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
+            Spread::Speed(turn) => {
+                let (slowest, fastest) = (turn.over(self.to), turn.over(self.from));
                 // The conversion from speed to period is the same as from period to speed.
-                unit.speed(slowest + (fastest - slowest) * part)
+                turn.over(slowest + (fastest - slowest) * part)
             }
         }
     }
@@ -151,11 +151,11 @@ impl Scale {
             }
             Spread::Logarithmic => ticks::logarithmic(self.from, self.to, most),
             Spread::Linear => ticks::linear(self.from, self.to, most, self.smallest_step),
-            Spread::Speed(unit) => {
-                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
+            Spread::Speed(turn) => {
+                let (slowest, fastest) = (turn.over(self.to), turn.over(self.from));
                 let of_speed = ticks::linear(slowest, fastest, most, self.smallest_step);
                 let period = |tick: Tick| Tick {
-                    value: unit.speed(tick.value),
+                    value: turn.over(tick.value),
                     ..tick
                 };
                 let moving = of_speed.into_iter().filter(|tick| tick.value > 0.0);
@@ -236,6 +236,8 @@ fn log_spaced(values: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting::system::SpeedUnit;
+    use crate::setting::units::Units;
 
     #[test]
     fn cells_of_uneven_values_end_midway() {
@@ -285,8 +287,9 @@ mod tests {
 
     #[test]
     fn periods_lie_by_their_speeds() {
-        let unit = SpeedUnit::RevolutionsPerMinute;
-        let scale = Scale::of_speeds(&[0.0, 0.01, 0.02, 0.04], unit).unwrap();
+        let rpm = SpeedUnit::RevolutionsPerMinute;
+        let turn = rpm.turn(&Units::si()).unwrap();
+        let scale = Scale::of_speeds(&[0.0, 0.01, 0.02, 0.04], turn).unwrap();
         // 1500, 3000 and 6000 rpm.
         for (period, part) in [(0.04, 0.0), (0.02, 1.0 / 3.0), (0.01, 1.0), (0.0, FASTER)] {
             assert!((scale.part(period) - part).abs() < 1e-12, "{period}");
@@ -299,7 +302,7 @@ mod tests {
         let edges = scale.filling_edges(&[0.0, 0.01, 0.02, 0.04]);
         assert_eq!(edges.first(), Some(&0.01));
         assert_eq!(edges.last(), Some(&0.04));
-        assert_eq!(Scale::of_speeds(&[0.0, 1.0], unit), None);
+        assert_eq!(Scale::of_speeds(&[0.0, 1.0], turn), None);
     }
 
     #[test]

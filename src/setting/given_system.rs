@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::given_key::GivenKey;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
-use super::system::{SystemModel, shipped};
+use super::system::{SpeedUnit, SystemModel, shipped};
 use super::units::Units;
 use super::values::Setting;
 use crate::text::document::Document;
@@ -81,32 +82,51 @@ impl GivenSystem {
         })
     }
 
-    /// The parameter that a key names; it is recorded as given.
-    pub(super) fn give(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
-        let all = self.model.quantities();
-        let Some(found) = all.iter().find(|of| of.name() == entry.key) else {
-            let names: Vec<&str> = all.iter().map(Quantity::name).collect();
-            let meant = did_you_mean(entry.key, names.iter().copied());
-            let message = format!("the system has no parameter `{}`", entry.key);
-            return Err(SpecError::at(entry.key_span.clone(), message)
-                .help(format!("{meant}its parameters: {}", names.join(", "))));
-        };
-        if self.given.iter().any(|(of, _)| of == found) {
-            let message = format!("{} is given twice", found.name());
+    /// The parameter that a key gives, of a file with these units; it is recorded as given.
+    pub(super) fn give(&mut self, entry: &Entry, units: &Units) -> Result<GivenKey, SpecError> {
+        let found = self.key(entry, units)?;
+        if self.given.iter().any(|(of, _)| *of == found.of) {
+            let message = match found.of.name() {
+                name if name == entry.key => format!("{name} is given twice"),
+                name => format!("{name} is given twice: {} gives it as a speed", entry.key),
+            };
             return Err(SpecError::at(entry.key_span.clone(), message)
                 .help("a parameter is either an axis or a fixed value"));
         }
-        self.given.push((found.clone(), entry.key_span.clone()));
-        Ok(found.clone())
+        self.given.push((found.of.clone(), entry.key_span.clone()));
+        Ok(found)
+    }
+
+    /// What a key gives: a parameter by its name, or the delay as a speed by the unit of that.
+    fn key(&self, entry: &Entry, units: &Units) -> Result<GivenKey, SpecError> {
+        if let Some(of) = self.model.quantity(entry.key) {
+            return Ok(of.into());
+        }
+        let at = |error: SpecError| SpecError {
+            span: Some(entry.key_span.clone()),
+            ..error
+        };
+        let speed = SpeedUnit::named(entry.key);
+        if let Some(unit) = speed.filter(|_| self.model.speed_axis.is_some()) {
+            return GivenKey::of_speed(unit, units).map_err(at);
+        }
+        let all = self.model.quantities();
+        let names: Vec<&str> = all.iter().map(Quantity::name).collect();
+        let meant = did_you_mean(entry.key, names.iter().copied());
+        let no_speed = speed.map_or("", |_| "; only a system with a speed_axis takes a speed");
+        let message = format!("the system has no parameter `{}`", entry.key);
+        Err(at(SpecError::whole(message).help(format!(
+            "{meant}its parameters: {}{no_speed}",
+            names.join(", ")
+        ))))
     }
 
     /// Reads the table `[fixed]`.
     pub(super) fn read_fixed(&mut self, fixed: &Entry, units: &Units) -> Result<(), SpecError> {
         for entry in fixed.table()? {
-            let of = self.give(&entry)?;
-            let checked = of.check(units.value(&entry, &of)?);
-            let value = checked.map_err(|why| SpecError::at(entry.span.clone(), why))?;
-            self.setting.vary(&of, value);
+            let given = self.give(&entry, units)?;
+            let value = given.value(&entry, units)?;
+            self.setting.vary(&given.of, value);
         }
         Ok(())
     }

@@ -20,6 +20,7 @@
 //! - `friction_table`: the points of a table as numbers in a sweep or case file
 //! - `given`: the tables that sweep and case files share: `[fixed]`, `[friction]`, `[units]`
 //! - `given_error`: whether given parameters make a setting, and why not, in words
+//! - `given_key`: what a key gives: a parameter in its own numbers, or the delay as a speed
 //! - `given_system`: the system of a sweep: its parameters, and the keys that it cannot have
 //! - `keys`: a row for every key of sweep and case files: name, values, default, meaning
 //! - `law_kind`: a row for every friction law that parameters describe: name, formula, parameters,
@@ -72,6 +73,7 @@ pub(crate) mod formula_keys;
 mod friction_table;
 mod given;
 mod given_error;
+mod given_key;
 mod given_system;
 pub(crate) mod keys;
 pub mod law_kind;

@@ -6,7 +6,6 @@ use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
 use super::keys::{RANGE, TOLERANCE, names};
 use super::parameter::Parameter;
-use super::quantity::Quantity;
 use super::units::Units;
 use crate::linear::MarginalTolerance;
 use crate::text::Shown;
@@ -17,15 +16,14 @@ const MOST_DEGREES: usize = 16;
 /// The largest degree of stability, in 1/time.
 const LARGEST_DEGREE: f64 = 1e12;
 
-/// The values of an axis of at most `most` points.
+/// The values of an axis of at most `most` points; `read` reads its ends.
 pub(super) fn read_range(
     axis: &Entry,
-    of: &Quantity,
-    units: &Units,
+    read: impl Fn(&Entry) -> Result<f64, SpecError>,
     most: u64,
 ) -> Result<Vec<f64>, SpecError> {
     let mut table = axis.document(names(&RANGE))?;
-    let [from, to] = ["from", "to"].map(|end| table.take(end, |entry| units.value(entry, of)));
+    let [from, to] = ["from", "to"].map(|end| table.take(end, &read));
     let points = table.take("points", Entry::whole);
     let spacing = table.take("spacing", read_spacing);
     table.finish()?;
@@ -50,23 +48,15 @@ fn read_spacing(entry: &Entry) -> Result<Spacing, SpecError> {
     }
 }
 
+/// The values of an axis that is a list; `read` reads one, in its range.
 pub(super) fn read_list(
     axis: &Entry,
-    parameter: &Quantity,
-    units: &Units,
+    read: impl Fn(&Entry) -> Result<f64, SpecError>,
 ) -> Result<Vec<f64>, SpecError> {
     let elements = axis
         .array()
         .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
-    elements
-        .iter()
-        .map(|element| {
-            let value = units.value(element, parameter)?;
-            parameter
-                .check(value)
-                .map_err(|why| SpecError::at(element.span.clone(), why))
-        })
-        .collect()
+    elements.iter().map(read).collect()
 }
 
 pub(super) fn read_degrees(entry: &Entry, units: &Units) -> Result<Vec<f64>, SpecError> {

@@ -11,16 +11,14 @@ use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::GivenParameters;
+use super::given_key::GivenKey;
 use super::given_system::GivenSystem;
 use super::keys::{SIMULATION, SWEEP, names};
 use super::map_names::MOST_AXES;
-use super::quantity::Quantity;
 use super::search::{LIMIT, Protocol};
 use super::simulation::{DISTURBED, Simulation};
 use super::spec::SweepSpec;
-use super::spec_values::{
-    read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
-};
+use super::spec_values::{read_degrees, read_field, read_fields, read_tolerance};
 use super::units::Units;
 use super::vc_keys::VcKeys;
 use crate::text::document::Document;
@@ -145,8 +143,8 @@ fn read_parameters(
     let tables = ["axes", "fixed", "friction", "start"];
     document.each(&tables, |table| match (table.key, &mut system) {
         ("axes", system) => read_axes(table, units, most_points, &mut axes, |entry| match system {
-            Some(system) => system.give(entry),
-            None => given.give_axis(entry),
+            Some(system) => system.give(entry, units),
+            None => given.give_axis(entry).map(GivenKey::from),
         }),
         ("fixed", Some(system)) => system.read_fixed(table, units),
         _ => given.read(table, |_| true),
@@ -160,7 +158,7 @@ fn read_axes(
     units: &Units,
     most_points: u64,
     axes: &mut Vec<Axis>,
-    mut give: impl FnMut(&Entry) -> Result<Quantity, SpecError>,
+    mut give: impl FnMut(&Entry) -> Result<GivenKey, SpecError>,
 ) -> Result<(), SpecError> {
     for entry in table.table()? {
         if axes.len() == MOST_AXES {
@@ -171,7 +169,7 @@ fn read_axes(
             return Err(SpecError::at(entry.key_span.clone(), message)
                 .help("give it one value in [fixed], and make a sweep for each other value"));
         }
-        let parameter = give(&entry)?;
+        let given = give(&entry)?;
         let points: u64 = axes.iter().map(|axis| axis.len() as u64).sum();
         if points > MOST_POINTS_TOGETHER {
             let message = format!(
@@ -180,12 +178,7 @@ fn read_axes(
             );
             return Err(entry.error(message));
         }
-        let values = if entry.is_table() {
-            read_range(&entry, &parameter, units, most_points)?
-        } else {
-            read_list(&entry, &parameter, units)?
-        };
-        axes.push(Axis::new(parameter, values).map_err(|e| entry.error(e.message))?);
+        axes.push(given.axis(&entry, units, most_points)?);
     }
     Ok(())
 }

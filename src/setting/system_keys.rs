@@ -54,7 +54,8 @@ pub(crate) const SYSTEM: [Key; 7] = [
         "speed_axis",
         "a table",
         "none",
-        "pictures over tau have the speed of a rotation of that period as their axis",
+        "tau is the period of a rotation, of this speed: pictures over tau have it as their axis; \
+         tables, answers, `[axes]` and `[fixed]` too where numbers have a unit of time",
     ),
 ];
 
@@ -84,13 +85,14 @@ pub(crate) const OWN_PARAMETER: [Key; 5] = [
 
 /// The keys of the axis of a speed.
 pub(crate) const SPEED_AXIS: [Key; 3] = [
-    needed("name", "one line", "what stands at the axis"),
+    needed("name", "one line", "what stands at the axis and in answers"),
     key("period", "\"tau\"", "\"tau\"", "whose inverse it is"),
     key(
         "unit",
         "\"rpm\", \"Hz\" or \"rad/s\"",
         "\"rpm\"",
-        "60/tau with tau in seconds, 1/tau or 2 pi/tau",
+        "60/tau with tau in seconds, 1/tau or 2 pi/tau; without a unit of time pictures show 2 \
+         pi/tau without a unit",
     ),
 ];
 

@@ -38,6 +38,7 @@ mod queue;
 mod reproduce;
 mod rig;
 mod shards;
+mod speeds;
 mod systems;
 mod traces;
 mod units;

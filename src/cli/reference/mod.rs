@@ -291,6 +291,14 @@ fn system_files(page: &mut String) {
     keys_of(page, &system_keys::OWN_PARAMETER);
     heading(page, 2, "`speed_axis`");
     keys_of(page, &system_keys::SPEED_AXIS);
+    paragraph(
+        page,
+        "With it a sweep with `units` may give `rpm`, `Hz` or `\"rad/s\"` in the place of `tau`, \
+         whatever the unit of `speed_axis`: `rpm = { from = 1000, to = 6000, points = 200 }` in \
+         `[axes]`, or one number in `[fixed]`. Values are evenly spaced in the speed; the axis of \
+         the map is `tau`, increasing. `slipmap point` takes `--rpm` with `--units`, and `slipmap \
+         export` has a column of the speed behind `tau`.",
+    );
     heading(page, 2, "Limits");
     paragraph(
         page,

@@ -1,10 +1,11 @@
-//! Delays that are periods, shown as speeds: stability lobes in the form that engineers use.
+//! Delays that are periods, shown as speeds: stability lobes in the form that engineers use. Where
+//! numbers have no unit of time, the speed is 2π/τ, without a unit.
 
 use super::text::{Rich, axis_title};
 use crate::meaning::scale::Scale;
 use crate::meaning::scale::has_speeds;
 use crate::setting::Parameter;
-use crate::setting::system::SpeedAxis;
+use crate::setting::system::{SpeedAxis, Turn};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 
@@ -22,14 +23,21 @@ pub(super) fn is_shown(map: &MapFile, axis: &MapAxis) -> bool {
 
 /// The scale of an axis from left to right.
 pub(super) fn scale(map: &MapFile, axis: &MapAxis) -> Scale {
-    let speeds = speed_of(map, axis).and_then(|speed| Scale::of_speeds(&axis.values, speed.unit));
+    let speeds = speed_of(map, axis).and_then(|speed| {
+        let turn = speed.turn(&map.units()).unwrap_or(Turn::WITHOUT_UNITS);
+        Scale::of_speeds(&axis.values, turn)
+    });
     speeds.unwrap_or_else(|| Scale::around(&axis.values))
 }
 
-/// "spindle speed  (rpm)", or the title of the axis itself.
+/// "spindle speed  (rpm)", without a unit of time "spindle speed  2π/τ", or the title of the axis
+/// itself.
 pub(super) fn title(map: &MapFile, axis: &MapAxis) -> Rich {
     match speed_of(map, axis) {
-        Some(speed) => Rich::plain(&format!("{}  ({})", speed.name, speed.unit.name())),
+        Some(speed) => Rich::plain(&match speed.turn(&map.units()) {
+            Some(_) => format!("{}  ({})", speed.name, speed.unit.name()),
+            None => format!("{}  2π/τ", speed.name),
+        }),
         None => axis_title(axis),
     }
 }

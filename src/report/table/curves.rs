@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::cells::{about, of_axis};
+use super::speeds::SpeedColumn;
 use super::{Column, Table, TableError};
 use crate::linear::Direction;
 use crate::store::MapFile;
@@ -15,7 +16,8 @@ use crate::sweep::described::curve_words::{
 use crate::sweep::described::schema::DEGREE_OF_STABILITY;
 
 /// Writes the curves of a map, one row per vertex: the number of the curve, the axes outside its
-/// plane, its degree of stability, branch, direction, stable side and kind, then the vertex. Axes
+/// plane, its degree of stability, branch, direction, stable side and kind, then the vertex, with
+/// the speed behind a delay that is its period. Axes
 /// outside the plane with an index in `held` are written at that index alone. Returns the number of
 /// rows; none for a map without curves.
 ///
@@ -36,7 +38,8 @@ pub fn write_curves(
         .filter(|&axis| axis != p && axis != tau)
         .collect();
     let about = comments.then(|| about(map));
-    let columns = columns(map, &outer, [p, tau]);
+    let speed = SpeedColumn::of(map).filter(|_| SpeedColumn::is_behind(&axes[tau]));
+    let columns = columns(map, &outer, [p, tau], speed.as_ref());
     let mut table = Table::begin(out, about.as_ref(), &columns)?;
     let wanted: Vec<Option<f64>> = outer
         .iter()
@@ -53,7 +56,7 @@ pub fn write_curves(
         if stop.load(Ordering::Relaxed) {
             written = Err(TableError::Stopped);
         } else if shown(&curve) {
-            written = write_curve(&mut table, &sides, number, &curve);
+            written = write_curve(&mut table, &sides, number, (&curve, speed.as_ref()));
         }
         number += 1;
         match written {
@@ -65,7 +68,12 @@ pub fn write_curves(
     table.finish().map(Some)
 }
 
-fn columns(map: &MapFile, outer: &[usize], plane: [usize; 2]) -> Vec<Column> {
+fn columns(
+    map: &MapFile,
+    outer: &[usize],
+    plane: [usize; 2],
+    speed: Option<&SpeedColumn>,
+) -> Vec<Column> {
     let degree = "degree of stability: roots on the curve have this real part, negated";
     let omega = map.units().angular_frequency();
     let omega = Column::of("omega", omega, "crossing frequency");
@@ -85,7 +93,8 @@ fn columns(map: &MapFile, outer: &[usize], plane: [usize; 2]) -> Vec<Column> {
     let names = map.names_in_curves();
     let of_axis = |&axis: &usize| of_axis(&map.axes()[axis]).called(&names[axis]);
     let outer = outer.iter().map(of_axis);
-    let vertex = plane.iter().map(of_axis).chain([omega]);
+    let vertex = plane.iter().map(of_axis);
+    let vertex = vertex.chain(speed.map(SpeedColumn::column)).chain([omega]);
     [number]
         .into_iter()
         .chain(outer)
@@ -103,7 +112,7 @@ fn write_curve(
     table: &mut Table<impl Write>,
     sides: &str,
     number: u64,
-    curve: &MapCurve,
+    (curve, speed): (&MapCurve, Option<&SpeedColumn>),
 ) -> Result<(), TableError> {
     let piece = &curve.piece;
     let direction = match piece.direction {
@@ -123,9 +132,13 @@ fn write_curve(
         table.text(word(DIRECTIONS, direction))?;
         table.text(word(sides, side))?;
         table.text(word(CURVE_KINDS, kind))?;
-        for value in [vertex.p, vertex.q, vertex.omega] {
+        for value in [vertex.p, vertex.q] {
             table.number(value)?;
         }
+        if let Some(speed) = speed {
+            table.number(speed.at(vertex.q))?;
+        }
+        table.number(vertex.omega)?;
         table.end_row()?;
     }
     Ok(())

@@ -7,11 +7,13 @@
 //! - `cells`: the cells of a map as rows
 //! - `curves`: the crossing curves of a map as rows, one for each vertex
 //! - `motion`: a motion as rows
+//! - `speeds`: the column of a speed beside the delay that is its period
 //! - `starts`: starts of motions with their outcomes, as rows
 
 mod cells;
 mod curves;
 mod motion;
+mod speeds;
 mod starts;
 
 use std::fmt::Write as _;

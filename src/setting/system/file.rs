@@ -58,6 +58,7 @@ impl SystemModel {
         let polynomials = POLYNOMIALS
             .map(|name| document.take(name, |entry| Written::polynomial(name, entry, whole)));
         document.finish()?;
+        check_speed_names(&parameters, speed_axis.as_ref())?;
         let names = parameters.iter().map(|(own, _)| &*own.name);
         let names: Vec<&str> = names.chain([Parameter::Tau.name()]).collect();
         let missing = |message: &str| SpecError {
@@ -138,6 +139,23 @@ fn check_feedback_names(parameters: &[PlacedParameter]) -> Result<(), SpecError>
                 own.name
             );
             Err(SpecError::at(place.clone(), message).help("leave it out"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses the units of speeds as names where the delay can be given as a speed.
+fn check_speed_names(
+    parameters: &[PlacedParameter],
+    speed_axis: Option<&SpeedAxis>,
+) -> Result<(), SpecError> {
+    let taken = |own: &OwnParameter| speed_axis.is_some() && SpeedUnit::named(&own.name).is_some();
+    match parameters.iter().find(|(own, _)| taken(own)) {
+        Some((own, place)) => {
+            let name = &own.name;
+            let message = format!("{name} is reserved: with a speed_axis it gives tau as a speed");
+            let error = SpecError::at(place.clone(), message);
+            Err(error.help(format!("call it {name}_1, for example")))
         }
         None => Ok(()),
     }
@@ -263,10 +281,7 @@ fn read_period(entry: &Entry) -> Result<(), SpecError> {
 fn read_speed_unit(entry: &Entry) -> Result<SpeedUnit, SpecError> {
     let unit = entry.string()?;
     let known = || SpeedUnit::ALL.into_iter().map(SpeedUnit::name);
-    let found = SpeedUnit::ALL
-        .into_iter()
-        .find(|known| known.name() == unit);
-    found.ok_or_else(|| {
+    SpeedUnit::named(unit).ok_or_else(|| {
         let meant = did_you_mean(unit, known());
         let all = known().collect::<Vec<_>>().join(", ");
         entry

@@ -17,7 +17,7 @@
 //! zeta = { long_name = "damping ratio", default = 0.02, minimum = 0 }
 //! width = 0                               # or its default alone; 0 where there is none
 //!
-//! # optional: pictures over the delay have this axis, 60/tau for "rpm"
+//! # optional: the delay is the period of a rotation, with this speed, 60/tau for "rpm"
 //! [speed_axis]
 //! name = "spindle_speed"
 //! period = "tau"
@@ -25,17 +25,21 @@
 //! ```
 //!
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
-//! - `parameter`: a parameter of a system
+//! - `parameter`: a parameter of a system; `speed`: the speed of which its delay is the period
 
 mod file;
 pub mod parameter;
 pub mod shipped;
+mod speed;
 mod text;
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use parameter::OwnParameter;
+
+pub(crate) use speed::SPEEDS;
+pub use speed::{SpeedAxis, SpeedUnit, Turn};
 
 use crate::linear::general::System;
 use crate::model::Channel;
@@ -70,7 +74,7 @@ pub struct SystemModel {
     form: Form,
     /// Its own parameters, in the order of the file.
     pub parameters: Vec<Arc<OwnParameter>>,
-    /// The speed that pictures over the delay may show.
+    /// The speed of the rotation of which the delay is the period, if it is one.
     pub speed_axis: Option<SpeedAxis>,
 }
 
@@ -87,56 +91,6 @@ enum Form {
 struct Expression {
     text: String,
     tape: Tape,
-}
-
-/// A speed derived from a delay that is a period.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SpeedAxis {
-    /// Its name.
-    pub name: String,
-    /// Its unit.
-    pub unit: SpeedUnit,
-}
-
-/// A unit of speed, which determines the speed for a period τ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpeedUnit {
-    /// Revolutions per minute, 60/τ with τ in seconds.
-    RevolutionsPerMinute,
-    /// Revolutions per unit of time, 1/τ.
-    Hertz,
-    /// Radians per unit of time, 2π/τ.
-    RadiansPerSecond,
-}
-
-impl SpeedUnit {
-    /// The units of speeds, by name.
-    pub(crate) const ALL: [Self; 3] = [
-        Self::RevolutionsPerMinute,
-        Self::Hertz,
-        Self::RadiansPerSecond,
-    ];
-
-    /// The name in files and pictures.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::RevolutionsPerMinute => "rpm",
-            Self::Hertz => "Hz",
-            Self::RadiansPerSecond => "rad/s",
-        }
-    }
-
-    /// The speed at which one revolution takes `period` > 0.
-    #[must_use]
-    pub(crate) fn speed(self, period: f64) -> f64 {
-        let turn = match self {
-            Self::RevolutionsPerMinute => 60.0,
-            Self::Hertz => 1.0,
-            Self::RadiansPerSecond => std::f64::consts::TAU,
-        };
-        turn / period
-    }
 }
 
 /// The values on which a system depends, and scratch space for its evaluation.

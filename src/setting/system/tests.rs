@@ -195,6 +195,11 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
         Some("\"a\""),
         "expected \"tau\"",
     ),
+    (
+        "P = \"s + rpm\"\nQ = \"1\"\nspeed_axis.name = \"n\"\nparameters.rpm = 1",
+        Some("rpm"),
+        "rpm is reserved",
+    ),
 ];
 
 /// Coefficients, the highest power first, are the expression that stands beside them.

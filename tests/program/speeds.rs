@@ -1,0 +1,217 @@
+//! Speeds of rotations whose period is the delay: as an axis, of a point, in tables and pictures.
+
+use crate::general_rows::{Row, rows};
+use crate::program::{self, Folder, err, expect, out};
+
+/// Turning with one mode of the natural frequency `omega`.
+const SPINDLE: &str = "title = \"Spindle\"\nP = \"s^2 + 2*zeta*omega*s + omega^2*(1 + w)\"\n\
+    Q = \"-omega^2*w\"\nspeed_axis = { name = \"spindle speed\", unit = \"rpm\" }\n\
+    [parameters]\nzeta = 0.05\nomega = { default = 600, unit = \"rad/s\" }\nw = 0.1\n";
+
+const LOBES: &str = "system = \"spindle.toml\"\nfields = [\"n_unstable\", \"abscissa\"]\n\
+    picture = \"n_unstable\"\nboundaries = true\nunits = \"SI\"\n\
+    [axes]\nw = { from = 0.0, to = 0.3, points = 7 }\n\
+    rpm = { from = 1000, to = 6000, points = 41 }\n";
+
+fn folder() -> Folder {
+    Folder::with(&[("spindle.toml", SPINDLE), ("lobes.toml", LOBES)])
+}
+
+fn run(folder: &Folder, sweep: &str) {
+    let args = ["run", sweep, "-o", "map.h5", "--quiet", "--fresh"];
+    expect(&folder.run(&args), 0, "");
+}
+
+/// The text of an answer.
+fn told(folder: &Folder, args: &[&str]) -> String {
+    let output = folder.run(args);
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
+    out(&output)
+}
+
+fn exported(folder: &Folder, more: &[&str]) -> Vec<Row> {
+    rows(
+        "map.h5",
+        &told(folder, &[&["export", "map.h5"], more].concat()),
+    )
+}
+
+/// The system of a row of `tests/reference/general_chatter.csv`, whose time is in 1/omega: its
+/// delay is 17.474839, here 0.02 s.
+#[test]
+fn a_point_at_a_speed_is_that_of_its_period() {
+    let folder = folder();
+    let omega = 17.474839 / 0.02;
+    let sets = ["zeta=0.01085", "w=0.0475408", &format!("omega={omega}")];
+    let mut args = vec!["point", "--system", "spindle.toml", "--units", "SI"];
+    args.extend(sets.iter().flat_map(|set| ["--set", set]));
+    let at = |more: &[&str]| told(&folder, &[&args[..], more].concat());
+    let by_speed = at(&["--rpm", "3000", "--json"]);
+    assert_eq!(by_speed, at(&["--tau", "0.02", "--json"]));
+    assert_eq!(by_speed, at(&["--tau", "20ms", "--json"]));
+    let answer: serde_json::Value = serde_json::from_str(&by_speed).unwrap();
+    assert_eq!(
+        (&answer["tau"], &answer["n_unstable"]),
+        (&0.02.into(), &2.into())
+    );
+    assert_eq!(answer["inputs"]["units"][2], "s");
+    let abscissa = answer["abscissa"].as_f64().unwrap();
+    assert!((abscissa / (0.0075989671524648536688 * omega) - 1.0).abs() < 1e-11);
+    let text = at(&["--rpm", "3000"]);
+    for line in [
+        "  tau              0.02 s\n",
+        "  spindle speed    3000 rpm\n",
+        // 60 omega/3.4857734875298524909, and over 5.7925877605478547477 and 9.5057965381106563699.
+        "  stable speeds    spindle speed > 15039.6 rpm\n",
+        "  stable speeds    5515.01 rpm < spindle speed < 9050.28 rpm\n",
+    ] {
+        assert!(text.contains(line), "{line}{text}");
+    }
+}
+
+/// Values are evenly spaced in the speed; the table has it beside the delay, and so have curves.
+#[test]
+fn a_speed_is_an_axis_of_a_sweep() {
+    let folder = folder();
+    run(&folder, "lobes.toml");
+    expect(&folder.run(&["verify", "map.h5"]), 0, "");
+    let cells = exported(&folder, &["--at", "w=0.2"]);
+    assert_eq!(cells.len(), 41);
+    for (place, row) in cells.iter().enumerate() {
+        let speed = 6000.0 - 125.0 * place as f64;
+        assert_eq!(row.number("rpm"), Some(speed));
+        assert_eq!(row.number("tau"), Some(60.0 / speed));
+        let by_point = told(
+            &folder,
+            &[
+                "point",
+                "--system",
+                "spindle.toml",
+                "--units",
+                "SI",
+                "--set",
+                "w=0.2",
+                "--json",
+                "--rpm",
+                &speed.to_string(),
+            ],
+        );
+        let point: serde_json::Value = serde_json::from_str(&by_point).unwrap();
+        let apart = row.or_zero("abscissa") - point["abscissa"].as_f64().unwrap();
+        assert!(apart.abs() < 1e-9, "{speed}: {apart}");
+    }
+    // Each lobe is lowest at w = 2 zeta (1 + zeta) and (omega/600)² = 1 + 2 zeta, the second at
+    // omega tau = 4 pi - acos(1/21).
+    let omega = 600.0 * 1.1_f64.sqrt();
+    let tau = (4.0 * std::f64::consts::PI - (1.0_f64 / 21.0).acos()) / omega;
+    let curves = exported(&folder, &["--table", "boundaries"]);
+    let of_lobe = |row: &&Row| (3000.0..4000.0).contains(&row.or_zero("rpm"));
+    let all = curves.iter().filter(of_lobe);
+    let lowest = all
+        .min_by(|a, b| a.or_zero("w").total_cmp(&b.or_zero("w")))
+        .unwrap();
+    assert!(
+        (lowest.or_zero("w") - 0.105).abs() < 1e-3,
+        "{}",
+        lowest.place
+    );
+    assert!(
+        (lowest.or_zero("rpm") * tau / 60.0 - 1.0).abs() < 0.02,
+        "{}",
+        lowest.place
+    );
+    let comments = told(&folder, &["export", "map.h5", "--comments"]);
+    assert!(
+        comments.contains("\n# rpm [rpm]: spindle speed\n"),
+        "{comments}"
+    );
+    let at = [
+        "point", "--map", "map.h5", "--at", "w=0.2", "--at", "tau=0.02",
+    ];
+    assert!(told(&folder, &at).contains("  spindle speed    3000 rpm\n"));
+    let plot = ["plot", "map.h5", "-o", "map.svg"];
+    expect(&folder.run(&plot), 0, "");
+    let picture = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(["spindle speed", "(rpm)", "3000"].map(|said| picture.contains(said)) == [true; 3]);
+}
+
+/// 60/τ needs seconds: dimensionless numbers have no rpm, wherever they are shown.
+#[test]
+fn without_units_no_speed_has_one() {
+    let folder = folder();
+    let lobes = "system = \"turning\"\nfields = [\"n_unstable\"]\n[axes]\n\
+        width = [0.0, 0.1, 0.3]\ntau = { from = 1.0, to = 16.0, points = 31 }\n";
+    std::fs::write(folder.path().join("plain.toml"), lobes).unwrap();
+    run(&folder, "plain.toml");
+    expect(&folder.run(&["plot", "map.h5", "-o", "map.svg"]), 0, "");
+    let picture = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(
+        picture.contains("spindle speed") && picture.contains("2π/τ"),
+        "{picture}"
+    );
+    let line = ["plot", "map.h5", "--at", "width=0.1", "-o", "line.svg"];
+    expect(&folder.run(&line), 0, "");
+    let line = std::fs::read_to_string(folder.path().join("line.svg")).unwrap();
+    let table = told(&folder, &["export", "map.h5", "--comments"]);
+    let curves = told(&folder, &["export", "map.h5", "--table", "boundaries"]);
+    let point = told(&folder, &["point", "--system", "turning", "--tau", "8.5"]);
+    let of_map = [
+        "point",
+        "--map",
+        "map.h5",
+        "--at",
+        "width=0.1",
+        "--at",
+        "tau=8.5",
+    ];
+    let of_map = told(&folder, &of_map);
+    for text in [picture, line, table, curves, point, of_map] {
+        assert!(!text.contains("rpm"), "{text}");
+    }
+    for (args, says) in [
+        (&["--rpm", "3000"][..], "dimensionless"),
+        (&["--rpm", "0", "--units", "SI"], "greater than 0"),
+        (
+            &["--rpm", "3000", "--tau", "1", "--units", "SI"],
+            "tau is given twice",
+        ),
+    ] {
+        let output = folder.run(&[&["point", "--system", "turning"], args].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(err(&output).contains(says), "{}", err(&output));
+    }
+    let no_axis = ["point", "--system", "pd", "--rpm", "3000", "--units", "SI"];
+    expect(&folder.run(&no_axis), 2, "period of a rotation");
+    let rpm = lobes.replace("tau = {", "rpm = {");
+    std::fs::write(folder.path().join("rpm.toml"), rpm).unwrap();
+    let refused = folder.run(&["plan", "rpm.toml"]);
+    let message = err(&refused);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(message.contains("rpm.toml:5:1") && message.contains("needs the unit of time"));
+}
+
+/// Delays in ms have the same speeds, and lengths in mm are told in mm.
+#[test]
+fn axes_have_the_declared_units() {
+    let folder = folder();
+    let units = "units = { force = \"N\", length = \"mm\", time = \"ms\" }";
+    let in_ms = LOBES.replace("units = \"SI\"", units);
+    let in_ms = in_ms + "[fixed]\nomega = 0.6\n";
+    std::fs::write(folder.path().join("ms.toml"), in_ms).unwrap();
+    run(&folder, "ms.toml");
+    let row = &exported(&folder, &["--at", "w=0.2", "--at", "tau=20ms"])[0];
+    assert_eq!(
+        (row.number("tau"), row.number("rpm")),
+        (Some(20.0), Some(3000.0))
+    );
+    let block = "fields = [\"n_unstable\"]\n[axes]\nv0 = [\"1 mm/s\", \"2 mm/s\", \"3 mm/s\"]\n\
+        tau = { from = 0, to = 1, points = 5 }\n[fixed]\nalpha_n = \"-1 N/mm\"\n\
+        [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = \"1 mm/s\"\n\
+        [units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n";
+    std::fs::write(folder.path().join("block.toml"), block).unwrap();
+    run(&folder, "block.toml");
+    expect(&folder.run(&["plot", "map.h5", "-o", "map.svg"]), 0, "");
+    let picture = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(picture.contains("(mm s⁻¹)"), "{picture}");
+    assert!(program::json(&folder.run(&["info", "map.h5", "--json"]))["units"]["v0"] == "mm s-1");
+}
