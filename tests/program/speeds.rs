@@ -56,7 +56,7 @@ fn a_point_at_a_speed_is_that_of_its_period() {
     );
     assert_eq!(answer["inputs"]["units"][2], "s");
     let abscissa = answer["abscissa"].as_f64().unwrap();
-    assert!((abscissa / (0.0075989671524648536688 * omega) - 1.0).abs() < 1e-11);
+    assert!((abscissa / (0.007_598_967_152_464_854 * omega) - 1.0).abs() < 1e-11);
     let text = at(&["--rpm", "3000"]);
     for line in [
         "  tau              0.02 s\n",

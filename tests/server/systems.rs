@@ -95,6 +95,36 @@ fn a_cell_of_a_map_of_a_system_is_a_point() {
     }
 }
 
+/// A map tells the speed of a delay that is a period, where there is a unit of time for it.
+#[test]
+fn the_speed_along_a_map_is_told() {
+    let sweep = "system = \"turning\"\n[axes]\nwidth = [0.1]\ntau = [0.02, 0.03]\n";
+    let si = format!("units = \"SI\"\n{sweep}").replace("tau = [0.02, 0.03]", "rpm = [2000, 3000]");
+    let folder = Folder::with(&[("plain.toml", sweep), ("si.toml", &si)]);
+    for name in ["plain", "si"] {
+        let (sweep, map) = (format!("{name}.toml"), format!("{name}.h5"));
+        expect(&folder.run(&["run", &sweep, "-o", &map]), 0, "");
+    }
+    let serving = Serving::new(&folder);
+    let list = serving.get("/api/v1/maps").json();
+    for map in list["maps"].as_array().unwrap() {
+        let id = map["id"].as_str().unwrap();
+        let axes = serving.get(&format!("/api/v1/maps/{id}")).json()["axes"].clone();
+        assert!(axes[0]["speed"].is_null());
+        assert_eq!(axes[1]["values"], serde_json::json!([0.02, 0.03]));
+        let speed = match map["name"].as_str().unwrap() {
+            "si.h5" => serde_json::json!({"name": "spindle speed", "unit": "rpm", "turn": 60.0}),
+            _ => Value::Null,
+        };
+        assert_eq!(axes[1]["speed"], speed, "{map}");
+    }
+    let point = |fixed: &str| {
+        let text = format!("system = \"turning\"\nunits = \"SI\"\n[fixed]\n{fixed}\n");
+        bare(serving.ask("point", &text).json())
+    };
+    assert_eq!(point("rpm = 3000"), point("tau = 0.02"));
+}
+
 /// What the page offers of a system is what texts take of it.
 #[test]
 fn systems_are_told_by_name_and_by_text() {

@@ -187,6 +187,21 @@ pub(super) struct MapAxis {
     /// Its values, if they are 4,096 at most.
     #[schema(required)]
     pub values: Option<Vec<f64>>,
+    /// The speed of the rotation whose period the delay is; null of all else, and where numbers
+    /// have no unit of time.
+    #[schema(required)]
+    pub speed: Option<MapSpeed>,
+}
+
+/// A speed that follows from the values of an axis.
+#[derive(Serialize, ToSchema)]
+pub(super) struct MapSpeed {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// It is this over a value of the axis.
+    pub turn: f64,
 }
 
 /// Description of a map, without its cells.

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use super::described::{self, MapAxisEnds, MapField, MapFirst, MapScalar, MapSummary, MapTold};
+use super::described::{
+    self, MapAxisEnds, MapField, MapFirst, MapScalar, MapSpeed, MapSummary, MapTold,
+};
 use crate::explore::known::{KnownField, KnownFlag};
 use crate::maps::look::Look;
 use crate::meaning::first;
@@ -31,12 +33,28 @@ fn ends(axis: &MapAxis) -> MapAxisEnds {
     }
 }
 
-fn axis(axis: &MapAxis) -> described::MapAxis {
+/// The speed along an axis of delays, where the system of the map has one.
+fn speed(look: &Look, axis: &MapAxis) -> Option<MapSpeed> {
+    let spec = &look.facts().plan.as_ref()?.spec;
+    let system = spec
+        .fixed
+        .system()
+        .filter(|_| axis.parameter == Parameter::Tau);
+    let (speed, turn) = system?.speed(&spec.units)?;
+    Some(MapSpeed {
+        name: speed.name.clone(),
+        unit: speed.unit.name(),
+        turn: turn.over(1.0),
+    })
+}
+
+fn axis(look: &Look, axis: &MapAxis) -> described::MapAxis {
     let listed = axis.values.len() <= MOST_VALUES;
     described::MapAxis {
         ends: ends(axis),
         long_name: axis.parameter.long_name().into(),
         values: listed.then(|| axis.values.clone()),
+        speed: speed(look, axis),
     }
 }
 
@@ -102,7 +120,7 @@ pub(super) fn description(look: &Look) -> MapTold {
         cells: facts.cells(),
         cells_done,
         version,
-        axes: facts.axes.iter().map(axis).collect(),
+        axes: facts.axes.iter().map(|of| axis(look, of)).collect(),
         fields: facts.fields.iter().map(field).collect(),
         scalars: scalars(look),
         flags: KnownFlag::all(),

@@ -18,7 +18,7 @@ import { ZOOM, follow, zoomed } from "./pointing.js";
 import { offerPresets } from "./presets.js";
 import { Queue } from "./queue.js";
 import { Saved } from "./saved.js";
-import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
+import { Scale, begun, movedInto, roundEnds, told, unitOf, valueAlong, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
 import { Stale } from "./stale.js";
 import { addressOf, comparedOf, leftOut, stateOf, textsOf } from "./state.js";
@@ -342,9 +342,7 @@ class Explorer {
   }
 
   #where(axes, values) {
-    return axes
-      .map(({ symbol, unit }, i) => withUnit(`${symbol} = ${told(values[i], 7)}`, unit))
-      .join(", ");
+    return axes.map((axis, i) => valueAlong(axis, values[i], 7)).join(", ");
   }
 
   /** The value of a chart's field or why there is none, and the abscissa that goes with it. */

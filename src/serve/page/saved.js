@@ -5,7 +5,7 @@ import { coloursOf } from "./colours.js";
 import { element, make, terms } from "./dom.js";
 import { MapList } from "./list.js";
 import { Newest } from "./newest.js";
-import { Scale, told } from "./scale.js";
+import { Scale, told, valueAlong } from "./scale.js";
 import { Slice } from "./slice.js";
 import { Problem } from "./source.js";
 import { showsTrace, tellTrace } from "./trace.js";
@@ -572,9 +572,10 @@ export class Saved {
       this.plane.draw();
     }
     const names = Object.keys(cell.axes);
-    const where = names.map(
-      (name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`,
-    );
+    const where = names.map((name) => {
+      const { symbol = name, speed } = this.#axis(name) ?? {};
+      return valueAlong({ symbol, speed }, cell.axes[name], 9);
+    });
     const { point = null, vc = null, motion = null } = cell;
     const key = JSON.stringify([where, point, vc, motion]);
     // While a map grows, what is computed at the point stays as it is.

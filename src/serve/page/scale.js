@@ -139,6 +139,13 @@ export function unitOf(dimension, units) {
 /** A number in words with its unit. */
 export const withUnit = (text, unit) => (!unit || unit === "1" ? text : `${text} ${unit}`);
 
+/** A value along an axis in words; of a delay that is a period with its speed. */
+export function valueAlong({ symbol, unit, speed }, value, digits) {
+  const words = withUnit(`${symbol} = ${told(value, digits)}`, unit);
+  if (!speed || !(value > 0)) return words;
+  return `${words} (${speed.name} ${told(speed.turn / value, digits)} ${speed.unit})`;
+}
+
 /** A phrase at the beginning of a line. Symbols stay as they are. */
 export const begun = (words) =>
   /^\p{Ll}+( |$)/u.test(words) ? words[0].toUpperCase() + words.slice(1) : words;
