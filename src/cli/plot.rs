@@ -58,10 +58,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
     /// Of a trace, the time from which it is shown
-    #[arg(long, value_name = "T", value_parser = amount_of(Parameter::Tau))]
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::Tau))]
     from: Option<Amount>,
     /// Of a trace, the time until which it is shown
-    #[arg(long, value_name = "T", value_parser = amount_of(Parameter::Tau))]
+    #[arg(long, value_name = "T", allow_hyphen_values = true,
+          value_parser = amount_of(Parameter::Tau))]
     to: Option<Amount>,
     /// Leave out the lines below the title: what is shown, and at which values
     #[arg(long)]

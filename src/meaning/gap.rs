@@ -66,7 +66,7 @@ impl Gap {
             Self::OutsideModel => "no value: outside the model",
             Self::NoValue => match field {
                 Field::VLiftoff => "no lift-off",
-                Field::VSmooth => "not smooth at v_max",
+                Field::VSmooth => "not smooth at the largest velocity",
                 Field::SettleTime => "does not settle",
                 Field::LastRelease => "sticks go on",
                 _ => "no value",
@@ -99,8 +99,7 @@ impl Gap {
             Self::Undecided => &[Run::Upright],
             Self::NoValue => &[Run::Level],
             Self::OutsideModel => &[Run::Level, Run::Rising],
-            Self::NotComputed => &[Run::Upright, Run::Level],
-            Self::LiftsOff | Self::Persists => &[],
+            Self::LiftsOff | Self::Persists | Self::NotComputed => &[],
         }
     }
 

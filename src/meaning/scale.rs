@@ -47,14 +47,6 @@ impl Scale {
         }
     }
 
-    /// The scale that contains the whole cell of every value: half a step more at both ends.
-    pub(crate) fn around(values: &[f64]) -> Self {
-        let scale = Self::between(values);
-        let edges = scale.edges(values);
-        let (from, to) = ends(&edges);
-        Self { from, to, ..scale }
-    }
-
     /// The scale of the speeds of the periods `values`, the slowest to the left; none where fewer
     /// than two are positive. A period of 0 has no place on it.
     pub(crate) fn of_speeds(values: &[f64], turn: Turn) -> Option<Self> {
@@ -135,6 +127,11 @@ impl Scale {
                 turn.over(slowest + (fastest - slowest) * part)
             }
         }
+    }
+
+    /// Its values at part 0 and at part 1.
+    pub(crate) fn ends(&self) -> (f64, f64) {
+        (self.value(0.0), self.value(1.0))
     }
 
     /// True if the value lies on the scale.
@@ -242,12 +239,10 @@ mod tests {
     #[test]
     fn cells_of_uneven_values_end_midway() {
         let values = [-0.1, -0.2, -0.5, -1.5];
-        let scale = Scale::around(&values);
-        let edges = scale.edges(&values);
-        for (edge, expected) in edges.iter().zip([-0.05, -0.15, -0.35, -1.0, -2.0]) {
+        let edges = Scale::between(&values).filling_edges(&values);
+        for (edge, expected) in edges.iter().zip([-0.1, -0.15, -0.35, -1.0, -1.5]) {
             assert!((edge - expected).abs() < 1e-12, "{edges:?}");
         }
-        assert!((scale.part(-2.0)).abs() < 1e-12 && (scale.part(-0.05) - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -308,11 +303,11 @@ mod tests {
     #[test]
     fn thinned_cells_reach_the_ends() {
         let all: Vec<f64> = (0..10).map(f64::from).collect();
-        let scale = Scale::around(&all);
+        let scale = Scale::between(&all);
         let edges = scale.filling_edges(&[0.0, 4.0, 8.0]);
-        assert_eq!(edges, [-0.5, 2.0, 6.0, 9.5]);
+        assert_eq!(edges, [0.0, 2.0, 6.0, 9.0]);
         let falling: Vec<f64> = all.iter().rev().copied().collect();
-        let edges = Scale::around(&falling).filling_edges(&[9.0, 5.0, 1.0]);
-        assert_eq!(edges, [9.5, 7.0, 3.0, -0.5]);
+        let edges = Scale::between(&falling).filling_edges(&[9.0, 5.0, 1.0]);
+        assert_eq!(edges, [9.0, 7.0, 3.0, 0.0]);
     }
 }

@@ -22,8 +22,8 @@ impl Tick {
     }
 }
 
-/// Decades in which numbers are written without a power of ten.
-const PLAIN: std::ops::Range<i32> = -4..6;
+/// Decades in which numbers are written without a power of ten: from 0.001 up to 99999.
+const PLAIN: std::ops::Range<i32> = -3..5;
 
 /// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten: at most `most`, and at
 /// least `smallest_step` apart.

@@ -1,5 +1,6 @@
 //! Free places for the name of an area between two lines.
 
+use super::near_curves::stepped;
 use super::page::Area;
 use super::scene::Point;
 
@@ -18,6 +19,7 @@ pub(super) fn between(
     frame: Area,
 ) -> Option<Point> {
     let most = ROOM * height;
+    let lines: Vec<Vec<Point>> = lines.iter().map(|line| stepped(line)).collect();
     let columns = steps(frame.left + 0.6 * width, frame.right - 0.6 * width);
     let rows = || steps(frame.top + height, frame.bottom - height);
     let places = columns.flat_map(|x| rows().map(move |y| (x, y)));

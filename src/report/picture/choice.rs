@@ -111,13 +111,13 @@ pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (St
     let about = shortened(&map.long_name(field));
     match title(map, options) {
         title if field != shown && options.title.is_none() => {
-            let name = Rich::plain(field.name()).and(&text::suffix(&unit, "  (", ")"));
-            let of = title.map(|title| Rich::plain(&format!("from: {title}")));
-            (capitalised(&about), [name].into_iter().chain(of).collect())
+            let of = title.map(|title| Rich::prose(&format!("from: {title}")));
+            let about = about + &text::suffix(&unit, "  (", ")");
+            (capitalised(&about), of.into_iter().collect())
         }
         title => {
             let title = title.unwrap_or_else(|| usual_title(map, field).into());
-            (title, vec![text::field_note(field, &about, &unit)])
+            (title, vec![text::field_note(&about, &unit)])
         }
     }
 }

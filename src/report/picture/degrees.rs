@@ -15,6 +15,8 @@ const SHRINKING: f64 = 0.5;
 const SHORTEST: f64 = 0.5;
 /// Gap after a dash.
 const GAP: f64 = 6.0;
+/// Width of the light edges on both sides together.
+const EDGES: f64 = 1.4;
 
 /// The degrees of stability above zero of some curves, increasing.
 pub(super) struct Degrees {
@@ -34,6 +36,11 @@ impl Degrees {
         }
     }
 
+    /// The degrees, increasing.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Entries of a legend, one for each degree.
     pub(super) fn entries(&self, colour: Rgb) -> Vec<(Swatch, Rich)> {
         let unit = suffix(&self.unit, " ", "");
@@ -46,8 +53,23 @@ impl Degrees {
 
     /// Draws the curve of one of the degrees.
     pub(super) fn draw(&self, degree: f64, points: &[Point], colour: Rgb, scene: &mut Scene) {
+        self.draw_dashes(degree, points, (colour, WIDTH), scene);
+    }
+
+    /// Draws what is seen of light edges on both sides of its dashes, which come on top.
+    pub(super) fn draw_edges(&self, degree: f64, points: &[Point], light: Rgb, scene: &mut Scene) {
+        self.draw_dashes(degree, points, (light, WIDTH + EDGES), scene);
+    }
+
+    fn draw_dashes(
+        &self,
+        degree: f64,
+        points: &[Point],
+        (colour, width): (Rgb, f64),
+        scene: &mut Scene,
+    ) {
         let place = self.values.partition_point(|&sigma| sigma < degree);
-        scene.dashed(points, colour, WIDTH * scene.unit(), dash(place));
+        scene.dashed(points, colour, width * scene.unit(), dash(place));
     }
 }
 

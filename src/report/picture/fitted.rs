@@ -1,9 +1,9 @@
-//! Cuts cells along the exact boundary of stability, where they are large enough to look like a
-//! staircase: each place shows the nearest cell on its own side.
+//! Cuts cells along exact boundaries, where they are large enough to look like a staircase: each
+//! place shows the nearest cell in its own part of the plane.
 
+use super::divisions::{Division, UNKNOWN_PART};
 use super::panels::Panel;
-use super::stable_area::intervals;
-use crate::linear::curves::CurvePiece;
+use crate::meaning::gap::Gap;
 use crate::report::known::Known;
 use crate::store::map_file::Plane;
 
@@ -13,33 +13,15 @@ const SMALL: f64 = 3.0;
 const PART: f64 = 1.5;
 /// The most parts of a cell along an axis.
 const MOST_PARTS: usize = 40;
-/// Relative distance from the end of an axis at which a curve is read there: its end is excluded.
-const END: f64 = 1e-9;
 
-/// The stable places of a plane, between its boundaries.
-pub(super) struct Sides<'a> {
-    /// The curves that bound the stable region.
-    pub pieces: &'a [&'a CurvePiece],
-    /// The smallest and the largest value of the x axis.
-    pub reach: (f64, f64),
-    /// Whether the plane is stable at a value of the x axis where no curve lies.
-    pub without_crossing: &'a dyn Fn(f64) -> bool,
-}
-
-impl Sides<'_> {
-    /// Whether each place of the y axis is stable at a value of the x axis. Curves end at the last
-    /// value of the map, cells half a step beyond it; there the state at the end is continued.
-    fn along(&self, panel: &Panel, x: f64, ys: &[f64]) -> Vec<bool> {
-        let (from, to) = self.reach;
-        let x = x.clamp(from, to - END * (to - from));
-        let stable = intervals(panel, self.pieces, x, self.without_crossing);
-        let holds = |y: f64| stable.iter().any(|&(low, high)| high <= y && y <= low);
-        ys.iter().map(|&y| holds(panel.up(y))).collect()
-    }
-}
-
-/// The cells of a plane, those along the boundary cut into parts. `u`: the unit of the picture.
-pub(super) fn fitted(panel: &Panel, known: Known, sides: &Sides, u: f64) -> Known {
+/// The cells of a plane, those along the boundary cut into parts. `turned`: whether q goes from
+/// left to right. `u`: the unit of the picture.
+pub(super) fn fitted(
+    panel: &Panel,
+    known: Known,
+    (division, turned): (&impl Division, bool),
+    u: f64,
+) -> Known {
     let plane = &known.plane;
     let (width, height) = (plane.columns.len(), plane.rows.len());
     let parts = |length: f64, n: usize| {
@@ -56,33 +38,40 @@ pub(super) fn fitted(panel: &Panel, known: Known, sides: &Sides, u: f64) -> Know
     }
     let columns = divided(&panel.x.filling_edges(&plane.columns), across);
     let rows = divided(&panel.y.filling_edges(&plane.rows), up);
-    let coarse = plane.columns.iter();
-    let coarse: Vec<Vec<bool>> = coarse
-        .map(|&x| sides.along(panel, x, &plane.rows))
-        .collect();
-    let fine: Vec<Vec<bool>> = columns
-        .iter()
-        .map(|&x| sides.along(panel, x, &rows))
-        .collect();
+    let fine = parts_of((&columns, &rows), (division, turned));
     let grid = Grid {
         panel,
-        plane,
-        coarse: &coarse,
+        known: &known,
+        coarse: &parts_of((&plane.columns, &plane.rows), (division, turned)),
+        value: &|part| division.value(part),
     };
     let of = |(row, column): (usize, usize)| {
         let at = panel.at(columns[column], rows[row]);
-        grid.nearest((row / up, column / across), at, fine[column][row])
+        grid.shown((row / up, column / across), at, fine[column][row])
     };
     let places = (0..rows.len()).flat_map(|row| (0..columns.len()).map(move |c| (row, c)));
-    let cells: Vec<usize> = places.map(of).collect();
+    let (cells, gaps) = places.map(of).unzip();
     Known {
-        gaps: cells.iter().map(|&cell| known.gaps[cell]).collect(),
+        gaps,
         plane: Plane {
-            cells: cells.iter().map(|&cell| plane.cells[cell]).collect(),
             rows,
             columns,
+            cells,
         },
     }
+}
+
+/// The parts in which places lie, by column, then row.
+fn parts_of(
+    (columns, rows): (&[f64], &[f64]),
+    (division, turned): (&impl Division, bool),
+) -> Vec<Vec<i64>> {
+    if !turned {
+        return columns.iter().map(|&x| division.along(x, rows)).collect();
+    }
+    let by_row: Vec<Vec<i64>> = rows.iter().map(|&y| division.along(y, columns)).collect();
+    let column = |c: usize| by_row.iter().map(|row| row[c]).collect();
+    (0..columns.len()).map(column).collect()
 }
 
 /// The middles of `parts` equal parts of every cell.
@@ -95,35 +84,55 @@ fn divided(edges: &[f64], parts: usize) -> Vec<f64> {
     edges.windows(2).flat_map(cell).collect()
 }
 
-/// The cells of the map, with the side on which each centre lies.
+/// The cells of the map, with the part of the plane in which each centre lies.
 struct Grid<'a> {
     panel: &'a Panel,
-    plane: &'a Plane,
+    known: &'a Known,
     /// By column, then row.
-    coarse: &'a [Vec<bool>],
+    coarse: &'a [Vec<i64>],
+    /// The value of a part, where it has one.
+    value: &'a dyn Fn(i64) -> Option<f64>,
 }
 
 impl Grid<'_> {
-    /// Among a cell and its neighbours, the one on this side whose centre is nearest to a place;
-    /// the cell itself where there is none.
-    fn nearest(&self, (row, column): (usize, usize), at: (f64, f64), side: bool) -> usize {
-        let width = self.plane.columns.len();
-        let own = row * width + column;
-        if self.coarse[column][row] == side {
-            return own;
+    /// What is shown at a place in a cell. A cell without a value stays whole, and so does one that
+    /// has another value than its part.
+    fn shown(
+        &self,
+        (row, column): (usize, usize),
+        at: (f64, f64),
+        part: i64,
+    ) -> (f64, Option<Gap>) {
+        let plane = &self.known.plane;
+        let own = row * plane.columns.len() + column;
+        let here = self.coarse[column][row];
+        let of = |cell: usize| (plane.cells[cell], self.known.gaps[cell]);
+        if part == here || part == UNKNOWN_PART || self.known.gaps[own].is_some() {
+            return of(own);
         }
+        match (self.value)(part) {
+            Some(value) if (self.value)(here) == Some(plane.cells[own]) => (value, None),
+            Some(_) => of(own),
+            None => of(self.nearest((row, column), at, part)),
+        }
+    }
+
+    /// Among a cell and its neighbours, the one in this part whose centre is nearest to a place;
+    /// the cell itself where there is none.
+    fn nearest(&self, (row, column): (usize, usize), at: (f64, f64), part: i64) -> usize {
+        let plane = &self.known.plane;
+        let width = plane.columns.len();
         let near = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
-        let rows = near(row, self.plane.rows.len());
+        let rows = near(row, plane.rows.len());
         let around = rows.flat_map(|row| near(column, width).map(move |column| (row, column)));
-        let fitting = around.filter(|&(row, column)| self.coarse[column][row] == side);
+        let fitting = around.filter(|&(row, column)| self.coarse[column][row] == part);
         let distance = |&(row, column): &(usize, usize)| {
-            let middle = self
-                .panel
-                .at(self.plane.columns[column], self.plane.rows[row]);
+            let middle = self.panel.at(plane.columns[column], plane.rows[row]);
             (middle.0 - at.0).hypot(middle.1 - at.1)
         };
         let nearest = fitting.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or(own, |(row, column)| row * width + column)
+        let (row, column) = nearest.unwrap_or((row, column));
+        row * width + column
     }
 }
 
@@ -131,14 +140,15 @@ impl Grid<'_> {
 mod tests {
     use super::*;
     use crate::linear::Direction;
-    use crate::linear::curves::{CurveKind, StableSide, Vertex};
+    use crate::linear::curves::{CurveKind, CurvePiece, StableSide, Vertex};
     use crate::meaning::scale::Scale;
+    use crate::report::picture::divisions::{Counts, Sides, turned};
     use crate::report::picture::page::Area;
 
-    /// Three by three cells, stable above a diagonal.
-    #[test]
-    fn cells_end_at_the_boundary() {
-        let values = [0.5, 1.5, 2.5];
+    const VALUES: [f64; 3] = [0.5, 1.5, 2.5];
+
+    /// Three by three cells, stable above a diagonal, which is a curve.
+    fn diagonal() -> (Panel, CurvePiece, Known) {
         let panel = Panel {
             area: Area {
                 left: 0.0,
@@ -146,8 +156,8 @@ mod tests {
                 right: 300.0,
                 bottom: 300.0,
             },
-            x: Scale::around(&values),
-            y: Scale::around(&values),
+            x: Scale::linear(0.0, 3.0),
+            y: Scale::linear(0.0, 3.0),
         };
         let vertex = |p| Vertex {
             p,
@@ -165,24 +175,61 @@ mod tests {
         let cells = (0..9).map(|i| if stable(i / 3, i % 3) { 0.0 } else { 2.0 });
         let known = Known {
             plane: Plane {
-                rows: values.to_vec(),
-                columns: values.to_vec(),
+                rows: VALUES.to_vec(),
+                columns: VALUES.to_vec(),
                 cells: cells.collect(),
             },
             gaps: vec![None; 9],
         };
-        let sides = Sides {
-            pieces: &[&line],
-            reach: (-1.0, 4.0),
-            without_crossing: &|_| false,
-        };
-        let fine = fitted(&panel, known.clone(), &sides, 1.0).plane;
+        (panel, line, known)
+    }
+
+    #[test]
+    fn cells_end_at_the_boundary() {
+        let (panel, line, known) = diagonal();
+        let pieces = [&line];
+        let sides = Sides::of(&pieces, (&[-1.0, 4.0], &[0.0, 3.0]), &|_| false);
+        let fine = fitted(&panel, known.clone(), (&sides, false), 1.0).plane;
         assert_eq!(fine.columns.len(), 120);
         for (i, &value) in fine.cells.iter().enumerate() {
             let (x, y) = (fine.columns[i % 120], fine.rows[i / 120]);
             assert_eq!(value == 0.0, y > x + 0.207, "{x} {y}");
         }
+        let counts = Counts::of(&pieces, &known);
+        assert_eq!(
+            fitted(&panel, known.clone(), (&counts, false), 1.0).plane,
+            fine
+        );
         // Small cells show no staircase.
-        assert_eq!(fitted(&panel, known.clone(), &sides, 50.0), known);
+        assert_eq!(fitted(&panel, known.clone(), (&sides, false), 50.0), known);
+    }
+
+    #[test]
+    fn counts_are_cut_either_way_round_and_only_where_they_are_known() {
+        let (panel, line, known) = diagonal();
+        let pieces = [&line];
+        let counts = Counts::of(&pieces, &known);
+        let fine = fitted(&panel, known.clone(), (&counts, false), 1.0).plane;
+        // The same from left to right.
+        let across = turned(&known);
+        let fine_across = fitted(&panel, across, (&counts, true), 1.0);
+        assert_eq!(turned(&fine_across).plane, fine);
+        // A cell that is not known stays whole.
+        let mut with_gap = known.clone();
+        with_gap.gaps[4] = Some(Gap::NotConverged);
+        let cut = fitted(&panel, with_gap, (&counts, false), 1.0);
+        let gaps = cut.gaps.iter().filter(|gap| gap.is_some()).count();
+        assert_eq!(gaps, 40 * 40);
+        // So does one that is not what the curves say.
+        let mut other = known.clone();
+        other.plane.cells[4] = 6.0;
+        let cut = fitted(
+            &panel,
+            other.clone(),
+            (&Counts::of(&pieces, &other), false),
+            1.0,
+        );
+        let others = cut.plane.cells.iter().filter(|value| **value == 6.0);
+        assert_eq!(others.count(), 40 * 40);
     }
 }

@@ -1,12 +1,15 @@
 //! Heat maps of a field: a panel for each value of the axis outside the plane.
 
 use super::choice;
+use super::curve_lines::{self, Lines};
 use super::degrees::Degrees;
+use super::divisions::{self, Counts, Sides};
 use super::error::PictureError;
-use super::fitted::{Sides, fitted};
+use super::fitted::fitted;
 use super::hatch;
 use super::key::{BOUNDARY_WIDTH, Key};
 use super::kinds;
+use super::legend::Swatch;
 use super::options::PictureOptions;
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
@@ -17,7 +20,7 @@ use super::symbols;
 use super::text::{Rich, axis_title};
 use super::traced::Curves;
 use super::view::View;
-use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::linear::curves::{CurvePiece, StableSide};
 use crate::meaning::colour::INK;
 use crate::meaning::gap::Gap;
 use crate::meaning::scale::Scale;
@@ -74,48 +77,47 @@ pub(super) fn draw(
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
     let symbols = symbols::of_view(map, view, y)?;
-    let kinds = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
-    let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
+    let entries = [
+        of_curves(curves, field, &degrees),
+        symbols::entries(&symbols),
+    ];
     let bounded = curves.iter().any(MapCurve::bounds_stability);
-    let key = Key::new(field, &unit, &planes, bounded, options)?.with(entries);
+    let key = Key::new(field, &unit, &planes, bounded, options)?.with(entries.concat());
     let column = match options.no_legend {
         true => None,
         false => Some(body.cut_right(key.width(u), GAP * u)),
     };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
-    let scales = (speed::scale(map, x_axis), Scale::around(&y_axis.values));
+    let scales = (speed::scale(map, x_axis), Scale::between(&y_axis.values));
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
     let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
     panels.check(scene)?;
-    let turned = found.turned;
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);
         let here: Vec<&MapCurve> = curves.iter().filter(|c| c.outer == outer).collect();
-        let plane = match changes_at_boundary(field) && !turned {
-            true => cut(map, (view.x, y), index, panel, plane, &here, u)?,
-            false => plane,
-        };
+        let shown = (index.as_slice(), field);
+        let plane = cut(map, (view.x, y), shown, panel, plane, (&here, found), u)?;
         draw_cells(panel, &plane, &key, scene);
-        for curve in here {
-            draw_curve(panel, curve, turned, &degrees, scene);
-        }
+        let lines = Lines {
+            curves: &here,
+            turned: found.turned,
+            others: field == Field::NUnstable,
+        };
+        lines.draw(panel, &degrees, scene);
         symbols::draw(panel, symbols, scene);
     }
     panels.draw_axes(scene);
     if let (Some(first), Some(last), Some(column)) =
         (panels.list.first(), panels.list.last(), column)
     {
-        let (top, bottom) = (first.area.top, last.area.bottom);
-        key.draw(
-            scene,
-            Area {
-                top,
-                bottom,
-                ..column
-            },
-        );
+        let beside = Area {
+            top: first.area.top,
+            bottom: last.area.bottom,
+            ..column
+        };
+        key.draw(scene, beside, column.bottom)?;
     }
     Ok(())
 }
@@ -126,53 +128,60 @@ fn bounding(curves: &[MapCurve]) -> impl Iterator<Item = &CurvePiece> + Clone {
     bounding.map(|curve| &curve.piece)
 }
 
+/// Entries for the curves that are drawn besides the boundary itself.
+fn of_curves(curves: &[MapCurve], field: Field, degrees: &Degrees) -> Vec<(Swatch, Rich)> {
+    let mut entries = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
+    entries.extend(degrees.entries(INK));
+    let other = |curve: &MapCurve| curve.piece.stable_side == StableSide::Neither;
+    // They lie between numbers of unstable roots.
+    if field == Field::NUnstable && curves.iter().any(other) {
+        let swatch = Swatch::Line(INK, curve_lines::OTHER_WIDTH, None);
+        entries.push((swatch, Rich::plain("other crossings")));
+    }
+    entries
+}
+
 /// Whether the field jumps at the boundary of stability.
 fn changes_at_boundary(field: Field) -> bool {
     field == Field::Regime || (field.of_sliding() && field.storage() == Storage::Count)
 }
 
-/// The cells of a panel, cut along the boundary of stability.
+/// The cells of a panel, cut along the boundaries of the field: of stability, or of every number of
+/// unstable roots.
 fn cut(
     map: &MapFile,
     (x, y): (usize, usize),
-    index: &[usize],
+    (index, field): (&[usize], Field),
     panel: &Panel,
     known: Known,
-    curves: &[&MapCurve],
+    (curves, found): (&[&MapCurve], &Curves),
     u: f64,
 ) -> Result<Known, PictureError> {
+    if !changes_at_boundary(field) || found.missing.is_some() {
+        return Ok(known);
+    }
+    let turned = found.turned;
+    let upright = match turned {
+        true => divisions::turned(&known),
+        false => known.clone(),
+    };
+    if field == Field::NUnstable {
+        let crossings = curves.iter().filter(|c| c.degree_of_stability == 0.0);
+        let pieces: Vec<_> = crossings.map(|curve| &curve.piece).collect();
+        let counts = Counts::of(&pieces, &upright);
+        return Ok(fitted(panel, known, (&counts, turned), u));
+    }
     let bounding = curves.iter().filter(|curve| curve.bounds_stability());
     let pieces: Vec<_> = bounding.map(|curve| &curve.piece).collect();
     let Some(field) = map.stability_field().filter(|_| !pieces.is_empty()) else {
         return Ok(known);
     };
-    let told = map.plane(field, index, (y, x), MOST_TOLD)?;
-    let values = &map.axes()[x].values;
-    let ends = |(from, to): (f64, f64), value: &f64| (value.min(from), value.max(to));
-    let sides = Sides {
-        pieces: &pieces,
-        reach: values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends),
-        without_crossing: &|p| stable_throughout(&told, field, p),
-    };
-    Ok(fitted(panel, known, &sides, u))
-}
-
-/// Draws a curve; if `turned`, with its second parameter from left to right.
-fn draw_curve(panel: &Panel, curve: &MapCurve, turned: bool, degrees: &Degrees, scene: &mut Scene) {
-    if curve.piece.stable_side != StableSide::Neither {
-        let at = |v: &Vertex| match turned {
-            true => panel.at(v.q, v.p),
-            false => panel.at(v.p, v.q),
-        };
-        let points: Vec<_> = curve.piece.vertices.iter().map(at).collect();
-        if curve.degree_of_stability > 0.0 {
-            degrees.draw(curve.degree_of_stability, &points, INK, scene);
-        } else if let Some(dash) = kinds::dash(curve.piece.kind) {
-            scene.dashed(&points, INK, BOUNDARY_WIDTH * scene.unit(), dash);
-        } else {
-            scene.path(points, INK, BOUNDARY_WIDTH * scene.unit());
-        }
-    }
+    let (p, q) = if turned { (y, x) } else { (x, y) };
+    let told = map.plane(field, index, (q, p), MOST_TOLD)?;
+    let [ps, qs] = [p, q].map(|axis| &map.axes()[axis].values[..]);
+    let without_crossing = |p: f64| stable_throughout(&told, field, &pieces, p);
+    let sides = Sides::of(&pieces, (ps, qs), &without_crossing);
+    Ok(fitted(panel, known, (&sides, turned), u))
 }
 
 fn draw_cells(panel: &Panel, known: &Known, key: &Key, scene: &mut Scene) {

@@ -4,7 +4,7 @@
 use super::error::PictureError;
 use super::legend::{Bar, Legend, Swatch};
 use super::options::PictureOptions;
-use super::page::Area;
+use super::page::{Area, SMALL};
 use super::scene::Scene;
 use super::text::{Rich, field_name, suffix};
 use crate::meaning::colour::{INK, Rgb};
@@ -16,6 +16,9 @@ use crate::setting::Field;
 
 /// Width of boundary lines.
 pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
+/// The height below which a bar with its heading is short, relative to the font of its numbers.
+const SHORT: f64 = 11.0;
+
 /// The meaning of a field's colours, in the panels and beside them.
 pub(super) struct Key {
     paint: Paint,
@@ -42,7 +45,7 @@ impl Key {
         let paint = Paint::asked(field, &values, options)?;
         let list = meaning::list_heading(field, &paint);
         let mut legend = Legend {
-            heading: list.map(Rich::plain).into_iter().collect(),
+            heading: list.map(Rich::prose).into_iter().collect(),
             entries: drawn(meaning::entries(field, &paint, &values)),
         };
         legend.entries.extend(of_gaps(field, planes));
@@ -76,19 +79,32 @@ impl Key {
         bar.max(self.legend.width(u))
     }
 
-    /// Draws the key into `area`.
-    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
+    /// Draws the key into `area`, down to `lowest` where its bar would be short.
+    ///
+    /// # Errors
+    /// When its bar has no room there.
+    pub(super) fn draw(
+        &self,
+        scene: &mut Scene,
+        area: Area,
+        lowest: f64,
+    ) -> Result<(), PictureError> {
         let colour = |value| self.colour(value);
         let Some(bar) = self.bar(&colour) else {
-            return self.legend.draw(scene, area);
+            self.legend.draw(scene, area);
+            return Ok(());
         };
-        let split = area.bottom - self.legend.height(scene.unit());
+        let u = scene.unit();
+        let below = self.legend.height(u);
+        let short = area.height() - below < SHORT * SMALL * u;
+        let split = if short { lowest } else { area.bottom } - below;
         let upper = Area {
             bottom: split,
             ..area
         };
-        bar.draw(scene, upper);
+        bar.draw(scene, upper)?;
         self.legend.draw(scene, Area { top: split, ..area });
+        Ok(())
     }
 
     fn bar<'a>(&self, colour: &'a dyn Fn(f64) -> Rgb) -> Option<Bar<'a>> {
@@ -115,7 +131,7 @@ fn drawn(entries: Vec<Entry>) -> Vec<(Swatch, Rich)> {
         };
         let text = match entry.formula {
             true => Rich::default().and_formula(&entry.text),
-            false => Rich::plain(&entry.text),
+            false => Rich::prose(&entry.text),
         };
         (swatch, text)
     };

@@ -1,7 +1,9 @@
 //! The meaning of colours, beside the panels.
 
+use super::error::PictureError;
 use super::hatch;
 use super::page::{Area, SMALL};
+use super::panels::fitting_up;
 use super::scene::{Align, Scene};
 use super::symbols::Symbol;
 use super::text::Rich;
@@ -14,6 +16,10 @@ const GAP: f64 = 14.0;
 const LINE: f64 = 1.55;
 const BAR_WIDTH: f64 = 30.0;
 const BAR_STEPS: usize = 256;
+/// A legend is not made smaller than by this factor.
+const LEAST: f64 = 0.5;
+/// The least height of a bar, relative to the font of its numbers.
+const LEAST_BAR: f64 = 2.0;
 
 /// How an entry is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,10 +68,12 @@ impl Legend {
         (headings + LINE * self.entries.len() as f64) * SMALL * u
     }
 
-    /// Draws the legend at the upper left corner of `area`.
+    /// Draws the legend at the upper left corner of `area`, smaller where the sheet ends before it.
     pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
-        let u = scene.unit();
-        let mut y = heading(scene, area, &self.heading);
+        let unit = scene.unit();
+        let room = f64::from(scene.size.1) - 0.5 * SMALL * unit - area.top;
+        let u = unit * (room / self.height(unit)).clamp(LEAST, 1.0);
+        let mut y = heading(scene, area, &self.heading, u);
         for (swatch, text) in &self.entries {
             let middle = y + 0.5 * LINE * SMALL * u;
             let (left, right) = (area.left, area.left + SWATCH * u);
@@ -109,8 +117,7 @@ impl Legend {
     }
 }
 
-fn heading(scene: &mut Scene, area: Area, lines: &[Rich]) -> f64 {
-    let u = scene.unit();
+fn heading(scene: &mut Scene, area: Area, lines: &[Rich], u: f64) -> f64 {
     let mut y = area.top;
     for line in lines {
         y += SMALL * u;
@@ -143,9 +150,15 @@ impl Bar<'_> {
     }
 
     /// Draws the bar over the height of `area`.
-    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
+    ///
+    /// # Errors
+    /// When it has no room there.
+    pub(super) fn draw(&self, scene: &mut Scene, area: Area) -> Result<(), PictureError> {
         let u = scene.unit();
-        let top = heading(scene, area, &self.heading) + 0.4 * SMALL * u;
+        let top = heading(scene, area, &self.heading, u) + 0.4 * SMALL * u;
+        if area.bottom - top < LEAST_BAR * SMALL * u {
+            return Err(PictureError::NoRoom);
+        }
         let (left, right) = (area.left, area.left + BAR_WIDTH * u);
         let height = area.bottom - top;
         let place = |part: f64| area.bottom - height * part;
@@ -157,12 +170,13 @@ impl Bar<'_> {
             scene.rect((left, place(high)), (right, area.bottom), colour);
         }
         scene.outline((left, top), (right, area.bottom), INK, 1.2 * u);
-        for tick in self.scale.ticks(8) {
+        for tick in fitting_up(&self.scale, height, u) {
             let y = place(self.scale.part(tick.value));
             scene.ruler((right, y), (right + 7.0 * u, y), INK, 1.4 * u);
             let at = (right + 14.0 * u, y + 0.31 * SMALL * u);
             let label = tick.label.as_deref().unwrap_or_default();
             scene.text(at, Align::Start, &Rich::plain(label), SMALL * u, INK);
         }
+        Ok(())
     }
 }

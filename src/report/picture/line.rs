@@ -363,7 +363,7 @@ mod tests {
                 right: 5.0,
                 bottom: 10.0,
             },
-            x: Scale::around(&line.at),
+            x: Scale::linear(-0.5, 4.5),
             y: value_scale::by_default(Field::VLiftoff, &[1.0, 2.0]),
         };
         let parts = stretches(&panel, &line);

@@ -7,19 +7,22 @@
 //!
 //! - `options`, `choice`: what is requested, and what is shown by default; `file`: formats
 //! - `key`: what stands beside a heat map; `paint`: colours as requested; `hatch`: lines over cells
-//!   without a value; `fitted`: cells along an exact boundary. What colours and words there are is
-//!   in `src/meaning`
+//!   without a value; `fitted`, `divisions`: cells along exact boundaries. What colours and words
+//!   there are is in `src/meaning`
 //! - `page`, `panels`, `inset`, `legend`: layout; `value_scale`: from values to places; `clip`,
 //!   `areas`, `off_scale`: lines at edges, names and values beyond
-//! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
-//!   them, and free places on curves
+//! - `stability`, `stable_area`, `stable_line`: of a plane, the region between its curves, and
+//!   where a line crosses them;
+//!   `label`, `curve_labels`, `near_curves`: labels of curves, free places beside curves, and their
+//!   points by place
 //! - `fit`: a friction law among the points to which it was fitted
 //! - `trace`, `strips`, `stack`, `span`: a motion over time, in panels above one another, or a part
 //!   of it; `close_up`: its switch-on, enlarged
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
-//! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
-//! - `text`, `font`: styles
+//! - `curve_lines`: exact curves over cells; `chained`: their pieces in one; `degrees`: dashed
+//!   curves of degrees of stability; `symbols`: places with a meaning
+//! - `text`, `font`: styles; `letters`: where texts and lines are
 //! - `boundaries`: the boundaries of stability in one plane, with a colour for each value of the
 //!   axis outside it
 //! - `error`: why a picture could not be drawn
@@ -35,16 +38,20 @@
 //!   rendering
 //! - `thinned`: curves of many points, reduced to what is seen of them
 //! - `traced`: the curves of the planes that are shown, of the map or traced from its sweep
-//! - `told_apart`: tests: colours under three kinds of colour blindness
+//! - `told_apart`, `uncrossed`: tests: colours under three kinds of colour blindness, and texts off
+//!   lines in all shipped pictures
 //! - `view`: the part of a map that is shown
 
 mod areas;
 mod boundaries;
+mod chained;
 mod choice;
 mod clip;
 mod close_up;
 mod curve_labels;
+mod curve_lines;
 mod degrees;
+mod divisions;
 mod error;
 mod file;
 #[cfg(feature = "fit")]
@@ -56,8 +63,11 @@ mod heat;
 mod inset;
 mod key;
 mod kinds;
+mod label;
 mod legend;
+mod letters;
 mod line;
+mod near_curves;
 mod off_scale;
 mod options;
 mod page;
@@ -71,6 +81,7 @@ mod roots;
 mod scene;
 mod span;
 mod speed;
+mod stability;
 mod stable_area;
 mod stable_line;
 mod stack;
@@ -87,6 +98,8 @@ mod view;
 mod tests;
 #[cfg(test)]
 mod told_apart;
+#[cfg(test)]
+mod uncrossed;
 
 use std::path::Path;
 

@@ -62,7 +62,7 @@ pub(super) fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
         scene.text(
             (left, top),
             Align::Start,
-            &Rich::plain(&line),
+            &Rich::prose(&line),
             TITLE * u,
             INK,
         );

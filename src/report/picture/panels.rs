@@ -249,9 +249,11 @@ impl Panels {
         let middle = inside(middle, words.x.width(size), outside.left, outside.right);
         let at = (middle, outside.bottom - 0.25 * LABEL * u);
         scene.text(at, Align::Middle, &words.x, size, INK);
-        let size = words.y.fitting(LABEL * u, outside.height());
+        // Above the other axis's title, which may begin as far to the left.
+        let lowest = outside.bottom - 1.4 * LABEL * u;
+        let size = words.y.fitting(LABEL * u, lowest - outside.top);
         let middle = 0.5 * (first.area.top + last.area.bottom);
-        let middle = inside(middle, words.y.width(size), outside.top, outside.bottom);
+        let middle = inside(middle, words.y.width(size), outside.top, lowest);
         let at = (outside.left + 0.85 * LABEL * u, middle);
         scene.upward_text(at, &words.y, size, INK);
     }

@@ -180,11 +180,16 @@ impl Scene {
         self.dot(at, PAPER, inner);
     }
 
-    /// Adds a polyline in dashes: (length, gap) in units of the picture.
+    /// Adds a polyline in dashes, about (length, gap) in units of the picture: an open one begins
+    /// and ends with a dash, a closed one goes on where it begins.
     pub(super) fn dashed(&mut self, points: &[Point], colour: Rgb, width: f64, dash: (f64, f64)) {
+        // A place that is none would have dashes without end.
+        if !points.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+            return;
+        }
         let u = self.unit();
-        let lengths = [dash.0 * u, dash.1 * u];
-        let (mut on, mut left) = (true, lengths[0]);
+        let (lengths, first) = fitting_dashes(points, [dash.0 * u, dash.1 * u]);
+        let (mut on, mut left) = (true, first);
         let mut current: Vec<Point> = points.first().copied().into_iter().collect();
         for pair in points.windows(2) {
             let (mut from, to) = (pair[0], pair[1]);
@@ -243,10 +248,58 @@ impl Scene {
     }
 }
 
+/// (length, gap) of dashes that fit into a polyline a whole number of times, and the length of the
+/// first one.
+fn fitting_dashes(points: &[Point], [dash, gap]: [f64; 2]) -> ([f64; 2], f64) {
+    let steps = points.windows(2);
+    let length: f64 = steps
+        .map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1))
+        .sum();
+    let closed = points.len() > 2 && points.first() == points.last();
+    // What the gap lacks behind the last dash of an open curve.
+    let lacking = if closed { 0.0 } else { gap };
+    let times = ((length + lacking) / (dash + gap)).round().max(1.0);
+    let by = length / (times * (dash + gap) - lacking);
+    let by = if by > 0.0 { by } else { 1.0 };
+    let first = if closed { 0.5 * dash } else { dash };
+    ([dash * by, gap * by], first * by)
+}
+
 fn shift(align: Align, width: f64) -> f64 {
     match align {
         Align::Start => 0.0,
         Align::Middle => 0.5 * width,
         Align::End => width,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dashes(points: &[Point]) -> Vec<(Point, Point)> {
+        let mut scene = Scene::new((1600, 1100));
+        scene.dashed(points, PAPER, 1.0, (10.0, 5.0));
+        let ends = scene.marks.iter().map(|mark| match mark {
+            Mark::Path { points, .. } => (points[0], points[points.len() - 1]),
+            other => panic!("{other:?}"),
+        });
+        ends.collect()
+    }
+
+    #[test]
+    fn dashes_fit_into_curves() {
+        let open = dashes(&[(0.0, 0.0), (104.0, 0.0)]);
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
+        assert!(open.len() == 7 && open[0].0 == (0.0, 0.0));
+        assert!(near(open[6].1.0, 104.0), "{open:?}");
+        let closed = dashes(&[(0.0, 0.0), (50.0, 0.0), (50.0, 40.0), (0.0, 0.0)]);
+        // The first and the last one are two halves.
+        let (first, last) = (closed[0], closed[closed.len() - 1]);
+        assert!(first.0 == (0.0, 0.0) && near(last.1.0, 0.0) && near(last.1.1, 0.0));
+        let length = |(a, b): (Point, Point)| (b.0 - a.0).hypot(b.1 - a.1);
+        assert!(near(length(first), length(last)), "{closed:?}");
+        // A curve shorter than a dash is drawn whole.
+        assert_eq!(dashes(&[(0.0, 0.0), (3.0, 0.0)]).len(), 1);
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn scale(map: &MapFile, axis: &MapAxis) -> Scale {
         let turn = speed.turn(&map.units()).unwrap_or(Turn::WITHOUT_UNITS);
         Scale::of_speeds(&axis.values, turn)
     });
-    speeds.unwrap_or_else(|| Scale::around(&axis.values))
+    speeds.unwrap_or_else(|| Scale::between(&axis.values))
 }
 
 /// "spindle speed  (rpm)", without a unit of time "spindle speed  2π/τ", or the title of the axis

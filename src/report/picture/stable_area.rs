@@ -89,11 +89,24 @@ pub(super) fn intervals(
     intervals
 }
 
-/// Whether the column of cells nearest to `p`, which no curve crosses, is stable, by the majority
-/// of its cells.
-pub(super) fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
-    let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
-    let Some((column, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+/// Whether the column of cells nearest to `p` is stable, by the majority of its cells: the nearest
+/// of those that none of the `pieces` crosses, if there is one.
+pub(super) fn stable_throughout(
+    plane: &Plane,
+    field: Field,
+    pieces: &[&CurvePiece],
+    p: f64,
+) -> bool {
+    let crossed = |at: f64| {
+        let mut pieces = pieces.iter();
+        pieces.any(|piece| delay_at(&piece.vertices, at).is_some())
+    };
+    let columns = plane.columns.iter().enumerate();
+    let by_distance = |a: &(usize, &f64), b: &(usize, &f64)| {
+        let far = |(_, at): &(usize, &f64)| (crossed(**at), (**at - p).abs());
+        far(a).0.cmp(&far(b).0).then(far(a).1.total_cmp(&far(b).1))
+    };
+    let Some((column, _)) = columns.min_by(by_distance) else {
         return false;
     };
     let cells = plane.cells.iter().skip(column).step_by(plane.columns.len());
@@ -104,7 +117,7 @@ pub(super) fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
 }
 
 /// The delay of a curve at `p`; none beyond its ends. Between its folds a curve is a function of p.
-fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
+pub(super) fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
     let first = vertices.first()?.p;
     let last = vertices.last()?.p;
     let (low, high) = (first.min(last), first.max(last));
@@ -164,6 +177,20 @@ mod tests {
         let (x, low, high) = regions[0][25];
         assert_eq!(x, 50.0);
         assert!((low - 65.0).abs() < 1e-9 && (high - 35.0).abs() < 1e-9);
+    }
+
+    /// The nearest column that a curve crosses says nothing about places beside the curve.
+    #[test]
+    fn columns_beside_curves_tell() {
+        let plane = Plane {
+            rows: vec![0.0, 1.0],
+            columns: vec![0.0, 0.5, 1.0],
+            cells: vec![0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
+        };
+        let curve = piece(StableSide::Longer, (0.0, 0.5), (0.6, 0.5));
+        let at = |p| stable_throughout(&plane, Field::NUnstable, &[&curve], p);
+        assert!(!at(0.65));
+        assert!(stable_throughout(&plane, Field::NUnstable, &[], 0.65));
     }
 
     #[test]

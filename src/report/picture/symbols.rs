@@ -81,10 +81,18 @@ pub(super) fn of_view(map: &MapFile, view: &View, y: usize) -> Result<Vec<Placed
             false => (Symbol::Best, (best.gain, best.tau)),
         });
         let sliding = sliding_in(map, (view.x, y), panel);
-        best.chain(sliding.map(|at| (Symbol::Sliding, at)))
+        let all = best.chain(sliding.map(|at| (Symbol::Sliding, at)));
+        all.filter(|(_, (at_x, at_y))| within(map, view.x, *at_x) && within(map, y, *at_y))
             .collect()
     };
     Ok(view.panels.iter().map(of).collect())
+}
+
+/// Whether a value is between the ends of an axis.
+fn within(map: &MapFile, axis: usize, value: f64) -> bool {
+    let mut values = map.axes()[axis].values.iter();
+    let below = values.clone().any(|end| *end <= value);
+    below && values.any(|end| *end >= value)
 }
 
 /// The meanings of the symbols in some panels, each once.

@@ -5,14 +5,19 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::divisions::Counts;
+use super::fitted::fitted;
 use super::*;
 use crate::linear::Crossings;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::curves::StableSide;
 use crate::maps::maker::make_in_memory;
 use crate::meaning::colour;
+use crate::meaning::scale::Scale;
 use crate::model::{Groups, elementary};
+use crate::report::known::Known;
 use crate::setting::{Field, Parameter, SweepSpec};
+use crate::store::map_file::MapCurve;
 use crate::sweep::Plan;
 use crate::sweep::described::root::Provenance;
 
@@ -138,12 +143,12 @@ fn titles_tell_the_field() {
     let unasked = text(None, None);
     assert_eq!(unasked, text(Some(Field::DelayMargin), None));
     assert!(unasked.contains("Velocity control"));
-    assert!(unasked.contains("delay_margin: distance in delay"));
+    assert!(unasked.contains("distance in delay") && !unasked.contains("delay_margin"));
     let other = text(Some(Field::NUnstable), None);
     assert!(other.contains("Number of characteristic roots"));
     assert!(other.contains("from: Velocity control"));
     let given = text(Some(Field::NUnstable), Some("My title"));
-    assert!(given.contains("My title") && given.contains("n_unstable: number of"));
+    assert!(given.contains("My title") && given.contains("number of") && !given.contains("n_unst"));
     assert!(!given.contains("Velocity control"));
 }
 
@@ -389,6 +394,94 @@ fn a_plane_at_a_delay_has_its_boundaries() {
         ..options
     };
     assert!(text(&boundaries).contains("its boundary"));
+}
+
+/// D(iω) of the letter under velocity control at μ′ = −0.3, with mass and stiffness 1.
+fn at_crossing(alpha_v: f64, tau: f64, omega: f64) -> (f64, f64) {
+    let (sin, cos) = (elementary::sin(omega * tau), elementary::cos(omega * tau));
+    let (b, a) = (-0.3, alpha_v);
+    // D(λ) = λ² + bλ + 1 − a (b + λ)(1 − e^(−λτ)).
+    let re = 1.0 - omega * omega - a * (b * (1.0 - cos) - omega * sin);
+    let im = b * omega - a * (omega * (1.0 - cos) + b * sin);
+    (re, im)
+}
+
+/// A part of a plane is traced with curves of its own, which are as exact.
+#[test]
+fn an_inset_has_its_own_curves() {
+    let case = Case::new(FIG2);
+    let view = View::new(&case.map, &[]).unwrap();
+    let part = [(-0.4, -0.05), (9.5, 10.5)];
+    let curves = traced::within(&case.map, &view, part).unwrap();
+    let lobe: Vec<_> = curves.iter().filter(|c| c.outer == [-0.3]).collect();
+    let all = Curves::of(&case.map, &view).unwrap().list;
+    let inside = |v: &&crate::linear::curves::Vertex| {
+        (part[0].0..=part[0].1).contains(&v.p) && (part[1].0..=part[1].1).contains(&v.q)
+    };
+    let vertices = |curves: &[&MapCurve]| {
+        let all = curves.iter().flat_map(|c| &c.piece.vertices);
+        all.filter(inside).count()
+    };
+    let coarse: Vec<_> = all.iter().filter(|c| c.outer == [-0.3]).collect();
+    assert!(vertices(&lobe) > 2 * vertices(&coarse));
+    for v in lobe.iter().flat_map(|c| &c.piece.vertices) {
+        let (re, im) = at_crossing(v.p, v.q, v.omega);
+        assert!(re.abs() < 1e-9 && im.abs() < 1e-9, "{v:?}: {re} {im}");
+    }
+}
+
+/// Cells cut along all crossing curves have the count of the argument principle nearly everywhere.
+#[test]
+fn cut_cells_have_the_count_of_their_place() {
+    let case = Case::new(
+        "fields = [\"n_unstable\"]\n[axes]\nalpha_v = { from = -1.5, to = 0.4, points = 11 }\n\
+         tau = { from = 0.5, to = 12, points = 13 }\n[fixed]\nmu_prime = -0.3\n",
+    );
+    let view = View::new(&case.map, &[]).unwrap();
+    let axes = case.map.axes();
+    let panel = panels::Panel {
+        area: page::Area {
+            left: 0.0,
+            top: 0.0,
+            right: 800.0,
+            bottom: 800.0,
+        },
+        x: Scale::between(&axes[view.x].values),
+        y: Scale::between(&axes[view.y.unwrap()].values),
+    };
+    let index = &view.panels[0];
+    let plane = (view.y.unwrap(), view.x);
+    let known = Known::read(&case.map, Field::NUnstable, index, plane, 600).unwrap();
+    let curves = Curves::of(&case.map, &view).unwrap().list;
+    let pieces: Vec<_> = curves.iter().map(|curve| &curve.piece).collect();
+    let cells = known.plane.clone();
+    let counts = Counts::of(&pieces, &known);
+    let cut = fitted(&panel, known, (&counts, false), 1.0).plane;
+    let counted = |x: f64, y: f64| {
+        let count = roots_right_of(Groups::new(-0.3, x, 0.0), y, 0.0);
+        count.map(|count| count as f64)
+    };
+    let nearest = |values: &[f64], at: f64| {
+        let far = |i: &usize| (values[*i] - at).abs();
+        (0..values.len())
+            .min_by(|a, b| far(a).total_cmp(&far(b)))
+            .unwrap()
+    };
+    let (mut whole, mut wrong, mut all) = (0, 0, 0);
+    for (row, &y) in cut.rows.iter().enumerate().step_by(5) {
+        for (column, &x) in cut.columns.iter().enumerate().step_by(5) {
+            let Some(count) = counted(x, y) else { continue };
+            let own = nearest(&cells.rows, y) * cells.columns.len() + nearest(&cells.columns, x);
+            whole += u32::from(cells.cells[own] != count);
+            wrong += u32::from(cut.cells[row * cut.columns.len() + column] != count);
+            all += 1;
+        }
+    }
+    assert!(all > 5000 && whole > 100, "{all} {whole}");
+    assert!(
+        wrong * 20 < whole,
+        "{wrong} of {all} are wrong, {whole} before"
+    );
 }
 
 /// What a sweep does not want traced is not traced for a picture either.

@@ -2,6 +2,7 @@
 
 use super::font;
 use crate::setting::Field;
+use crate::setting::Parameter;
 use crate::setting::quantity::Quantity;
 use crate::setting::source::{OfRoots, Source};
 use crate::store::map_file::MapAxis;
@@ -54,19 +55,39 @@ impl Rich {
         self
     }
 
-    /// The text followed by the symbol of a parameter. A 0 at its end becomes a subscript; a name
-    /// of several words is not read as a formula.
+    /// The text followed by the symbol of a parameter, with its subscript; a name of several
+    /// letters is not read as a formula.
     pub(super) fn and_symbol(self, parameter: impl Into<Quantity>) -> Self {
         let parameter = parameter.into();
         let symbol = parameter.symbol();
-        let mut behind = symbol.split('_').skip(1);
-        if symbol.is_ascii() && behind.any(|part| part.len() != 1) {
-            return self.and(symbol);
-        }
-        match symbol.strip_suffix('0') {
-            Some(base) => self.and_formula(&format!("{base}_0")),
+        match typeset(symbol) {
+            Some((base, below)) => {
+                let mut text = self.and(&base);
+                text.0.push((below.to_owned(), true));
+                text
+            }
+            None if symbol.is_ascii() => self.and(symbol),
             None => self.and_formula(symbol),
         }
+    }
+
+    /// A sentence or a title in which names of parameters, such as v0, are set as symbols.
+    pub(super) fn prose(text: &str) -> Self {
+        let mut prose = Self::default();
+        let of_name = |c: char| c.is_alphanumeric() || c == '_';
+        let mut left = text;
+        while !left.is_empty() {
+            let word = left.find(|c| !of_name(c)).unwrap_or(left.len());
+            let (name, rest) = left.split_at(word);
+            prose = match named(name) {
+                Some(parameter) => prose.and_symbol(parameter),
+                None => prose.and(name),
+            };
+            let between = rest.find(of_name).unwrap_or(rest.len());
+            prose = prose.and(&rest[..between]);
+            left = &rest[between..];
+        }
+        prose
     }
 
     /// The text followed by `formula`, in which the letter after each `_` is a subscript.
@@ -109,6 +130,56 @@ impl Rich {
     }
 }
 
+/// The parameter of a name that is no English word.
+fn named(name: &str) -> Option<Parameter> {
+    let no_word = |c: char| c == '_' || c.is_ascii_digit();
+    let formal = name.contains(no_word) || letter(name).is_some();
+    let parameter = || Parameter::ALL.into_iter().find(|p| p.name() == name);
+    formal.then(parameter).flatten()
+}
+
+/// A symbol as one letter and its subscript, which may be empty; none where it is neither.
+fn typeset(symbol: &str) -> Option<(String, &str)> {
+    let digits = symbol.trim_end_matches(|c: char| c.is_ascii_digit());
+    let (base, below) = match symbol.split_once('_') {
+        Some(parts) => parts,
+        None => symbol.split_at(digits.len()),
+    };
+    let base = letter(base).map_or_else(|| base.to_owned(), String::from);
+    let letters = base.chars().filter(|c| c.is_alphanumeric()).count();
+    // A dot above its letter is a part of it.
+    let short = letters == 1 && base.chars().count() == 1;
+    let plain = below.chars().all(char::is_alphanumeric);
+    (short && plain).then_some((base, below))
+}
+
+/// The Greek letter of this name.
+fn letter(name: &str) -> Option<char> {
+    const LETTERS: [(&str, char); 20] = [
+        ("alpha", 'α'),
+        ("beta", 'β'),
+        ("gamma", 'γ'),
+        ("delta", 'δ'),
+        ("epsilon", 'ε'),
+        ("zeta", 'ζ'),
+        ("eta", 'η'),
+        ("theta", 'θ'),
+        ("kappa", 'κ'),
+        ("lambda", 'λ'),
+        ("mu", 'μ'),
+        ("nu", 'ν'),
+        ("xi", 'ξ'),
+        ("rho", 'ρ'),
+        ("sigma", 'σ'),
+        ("tau", 'τ'),
+        ("phi", 'φ'),
+        ("chi", 'χ'),
+        ("psi", 'ψ'),
+        ("omega", 'ω'),
+    ];
+    LETTERS.iter().find(|row| row.0 == name).map(|row| row.1)
+}
+
 fn run_size(size: f64, lowered: bool) -> f64 {
     if lowered { SUBSCRIPT_SIZE * size } else { size }
 }
@@ -121,19 +192,20 @@ pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str)
 /// "gain of velocity control α_v (s⁻¹)".
 pub(super) fn axis_title(axis: &MapAxis) -> Rich {
     let (long, symbol) = (axis.parameter.long_name(), axis.parameter.symbol());
-    // A system's own parameter may have nothing but its name.
-    let named = match long == symbol {
-        true => Rich::default(),
-        false => Rich::plain(long).and("  "),
+    // A system's own parameter may have nothing but its name, or a name that is no symbol.
+    let named = if long == symbol {
+        Rich::symbol(&axis.parameter)
+    } else if typeset(symbol).is_none() && symbol.is_ascii() {
+        Rich::prose(long)
+    } else {
+        Rich::prose(long).and("  ").and_symbol(&axis.parameter)
     };
-    named
-        .and_symbol(&axis.parameter)
-        .and(&suffix(&axis.unit, "  (", ")"))
+    named.and(&suffix(&axis.unit, "  (", ")"))
 }
 
-/// A field by its name in the map, followed by its full meaning.
-pub(super) fn field_note(field: Field, about: &str, unit: &str) -> Rich {
-    Rich::plain(&format!("{}: {about}", field.name())).and(&suffix(unit, "  (", ")"))
+/// The full meaning of a field.
+pub(super) fn field_note(about: &str, unit: &str) -> Rich {
+    Rich::prose(about).and(&suffix(unit, "  (", ")"))
 }
 
 /// The short name of a field, with its unit.
@@ -157,7 +229,6 @@ pub(super) fn field_name(field: Field) -> Rich {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::setting::Parameter;
 
     #[test]
     fn no_text_is_longer_than_can_be_drawn() {
@@ -184,6 +255,19 @@ mod tests {
             [("v".into(), false), ("0".into(), true)]
         );
         assert_eq!(runs(Parameter::MuPrime), [("μ′".to_string(), false)]);
+        assert_eq!(
+            runs(Parameter::LoadMin),
+            [("N".into(), false), ("min".into(), true)]
+        );
+        let typeset = |name| super::typeset(name);
+        assert_eq!(typeset("zeta"), Some(("ζ".to_owned(), "")));
+        assert_eq!(typeset("k_tool"), Some(("k".to_owned(), "tool")));
+        assert_eq!(typeset("width"), None);
+        let prose = Rich::prose("load control at v0 = 0.2, tau of mu_prime; mass");
+        let lowered: Vec<_> = prose.0.iter().filter(|run| run.1).collect();
+        assert_eq!(lowered[0].0, "0");
+        let all: String = prose.0.iter().map(|run| &*run.0).collect();
+        assert_eq!(all, "load control at v0 = 0.2, τ of μ′; mass");
         assert_eq!(
             runs(Parameter::MuRatio),
             [("μ", false), ("K", true), ("/μ", false), ("S", true)].map(|(t, low)| (t.into(), low))

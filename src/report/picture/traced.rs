@@ -75,6 +75,20 @@ impl Curves {
     }
 }
 
+/// The curves of the planes that `view` shows between these (from, to) of its axes from left to
+/// right and from bottom to top, traced for that part alone, so that small things in it are as
+/// exact as large ones; none where they cannot be traced.
+pub(super) fn within(map: &MapFile, view: &View, [x, y]: [(f64, f64); 2]) -> Option<Vec<MapCurve>> {
+    let (plan, turned) = plan(map, view).ok()?;
+    let mut spec = plan.spec;
+    for (axis, (from, to)) in [(view.x, x), (view.y?, y)] {
+        spec.axes[axis].values = vec![from.min(to), from.max(to)];
+    }
+    let part = Plan::new(spec).ok()?;
+    let curves = Curves::traced(map, view, &part, turned);
+    curves.missing.is_none().then_some(curves.list)
+}
+
 /// The axes (p, q) of the plane that is shown, the delay second.
 fn plane(view: &View, turned: bool) -> Option<(usize, usize)> {
     let y = view.y?;
