@@ -23,7 +23,7 @@ impl DigitsArgs {
 pub(super) struct Digits(usize);
 
 impl Default for Digits {
-    /// As many as are the same on every machine, and read at a glance.
+    /// Six digits, which are the same on every machine and are read at a glance.
     fn default() -> Self {
         Self(6)
     }

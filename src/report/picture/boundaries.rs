@@ -8,7 +8,7 @@ use super::degrees::Degrees;
 use super::error::PictureError;
 use super::inset::{self, Inset};
 use super::kinds;
-use super::label::Label;
+use super::label::{Label, THIN};
 use super::legend::{Legend, Swatch};
 use super::letters;
 use super::options::PictureOptions;
@@ -28,7 +28,6 @@ use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
 
 const WIDTH: f64 = 3.0;
-const THIN: f64 = 1.3;
 const SHADE: f64 = 0.13;
 /// Dashes of the lines that connect an inset, (length, gap).
 const DASH: (f64, f64) = (6.0, 6.0);

@@ -2,9 +2,9 @@
 //! stands away from its curve, with a line that leads to it and crosses nothing.
 
 use super::clip;
-use super::near_curves::{Points, STEP, Size, length_of, stepped};
+use super::near_curves::{Points, STEP, Size, stepped};
 use super::page::Area;
-use super::scene::Point;
+use super::scene::{Point, length_of};
 
 /// Distance of a text from its curve, as a share of its height.
 const BESIDE: f64 = 0.45;
@@ -258,8 +258,7 @@ fn inside(at: Point, size: Size, area: Area) -> bool {
 }
 
 fn overlap(a: (Point, Size), b: (Point, Size)) -> bool {
-    let (a, b) = (roomy(a.0, a.1), roomy(b.0, b.1));
-    a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom
+    roomy(a.0, a.1).overlaps(&roomy(b.0, b.1))
 }
 
 /// Whether a line meets the box of a text.

@@ -6,8 +6,8 @@ use super::scene::{Align, Scene};
 use super::text::Rich;
 use crate::meaning::colour::Rgb;
 
-/// Width of the line that leads to a label.
-const THIN: f64 = 1.3;
+/// Width of thin lines, such as one that leads to a label.
+pub(super) const THIN: f64 = 1.3;
 
 /// A label with its place.
 pub(super) struct Label<'a> {
@@ -51,10 +51,8 @@ impl Label<'_> {
     /// Whether the frame around an area cuts it.
     pub(super) fn is_cut(&self, by: Area) -> bool {
         let text = self.area();
-        let across = text.left < by.right && by.left < text.right;
-        let up = text.top < by.bottom && by.top < text.bottom;
         let within = text.left > by.left && text.right < by.right;
-        across && up && !(within && text.top > by.top && text.bottom < by.bottom)
+        text.overlaps(&by) && !(within && text.top > by.top && text.bottom < by.bottom)
     }
 
     /// Draws it, with the line that leads to it.

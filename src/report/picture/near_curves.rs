@@ -19,14 +19,6 @@ const CLEARLY: f64 = 1.8;
 /// A width and a height.
 pub(super) type Size = (f64, f64);
 
-/// Length of a curve.
-pub(super) fn length_of(curve: &[Point]) -> f64 {
-    let steps = curve.windows(2);
-    steps
-        .map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1))
-        .sum()
-}
-
 /// Points along a curve, at most a step apart, its last one among them.
 pub(super) fn stepped(curve: &[Point]) -> Vec<Point> {
     let mut points = Vec::new();

@@ -40,6 +40,14 @@ impl Area {
         self.bottom - self.top
     }
 
+    /// Whether two areas have a place in common inside their edges.
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
     /// Cuts a column of this width off the right, with a gap; returns the column.
     pub(super) fn cut_right(&mut self, width: f64, gap: f64) -> Self {
         let column = Self {

@@ -248,13 +248,18 @@ impl Scene {
     }
 }
 
+/// Length of a polyline.
+pub(super) fn length_of(points: &[Point]) -> f64 {
+    let steps = points.windows(2);
+    steps
+        .map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1))
+        .sum()
+}
+
 /// (length, gap) of dashes that fit into a polyline a whole number of times, and the length of the
 /// first one.
 fn fitting_dashes(points: &[Point], [dash, gap]: [f64; 2]) -> ([f64; 2], f64) {
-    let steps = points.windows(2);
-    let length: f64 = steps
-        .map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1))
-        .sum();
+    let length = length_of(points);
     let closed = points.len() > 2 && points.first() == points.last();
     // What the gap lacks behind the last dash of an open curve.
     let lacking = if closed { 0.0 } else { gap };
