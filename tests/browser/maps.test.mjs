@@ -178,13 +178,13 @@ async function drawn(page, map, field, points) {
         for (let i = 0; i < nx; i++) {
           for (let j = 0; j < ny; j++) {
             const count = new Map();
-            const [x, y] = [
-              Math.round(left + ((i + 0.5) * width) / nx),
-              Math.round(top + height - ((j + 0.5) * height) / ny),
-            ];
+            // The axes end at the first and the last value, in the middle of a cell.
+            const x = left + Math.min(Math.max((i * width) / (nx - 1), 8), width - 8);
+            const y = top + Math.min(Math.max(height - (j * height) / (ny - 1), 8), height - 8);
+            const at = [x, y].map(Math.round);
             for (let dx = -5; dx <= 5; dx++) {
               for (let dy = -5; dy <= 5; dy++) {
-                const colour = hex(4 * ((y + dy) * 1600 + x + dx));
+                const colour = hex(4 * ((at[1] + dy) * 1600 + at[0] + dx));
                 count.set(colour, (count.get(colour) ?? 0) + 1);
               }
             }

@@ -29,6 +29,11 @@ fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)
 }
 
+/// The value of p at which curves are read: they exclude the end of the axis.
+fn before_end(p: f64, (from, to): (f64, f64)) -> f64 {
+    p.clamp(from, to - END * (to - from))
+}
+
 /// The stable places of a plane, part 1, between its boundaries.
 pub(super) struct Sides<'a> {
     pieces: &'a [&'a CurvePiece],
@@ -69,8 +74,7 @@ impl<'a> Sides<'a> {
 
 impl Division for Sides<'_> {
     fn along(&self, p: f64, qs: &[f64]) -> Vec<i64> {
-        let (from, to) = self.reach;
-        let p = p.clamp(from, to - END * (to - from));
+        let p = before_end(p, self.reach);
         let stable = intervals(&self.panel, self.pieces, p, self.without_crossing);
         let holds = |y: f64| stable.iter().any(|&(low, high)| high <= y && y <= low);
         qs.iter()
@@ -86,6 +90,8 @@ impl Division for Sides<'_> {
 /// The numbers of unstable roots of a plane, between all its crossing curves.
 pub(super) struct Counts<'a> {
     pieces: &'a [&'a CurvePiece],
+    /// The smallest and the largest p.
+    reach: (f64, f64),
     /// The values of p of the cells, increasing, with how many roots there are at the lowest q.
     lowest: Vec<(f64, i64)>,
     /// The values of p where a curve comes to the lowest q, increasing, with how many roots more
@@ -105,6 +111,7 @@ impl<'a> Counts<'a> {
         arrivals.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut counts = Self {
             pieces,
+            reach: ends(&known.plane.columns),
             lowest: Vec::new(),
             arrivals,
         };
@@ -119,6 +126,7 @@ impl<'a> Counts<'a> {
     /// How many roots come to the right half-plane as q grows, beside the q where they do,
     /// increasing; none where a curve says nothing about that.
     fn changes(&self, p: f64) -> Option<Vec<(f64, i64)>> {
+        let p = before_end(p, self.reach);
         let mut changes = Vec::new();
         for piece in self.pieces {
             if let Some(q) = delay_at(&piece.vertices, p) {

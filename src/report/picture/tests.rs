@@ -430,14 +430,10 @@ fn an_inset_has_its_own_curves() {
     }
 }
 
-/// Cells cut along all crossing curves have the count of the argument principle nearly everywhere.
-#[test]
-fn cut_cells_have_the_count_of_their_place() {
-    let case = Case::new(
-        "fields = [\"n_unstable\"]\n[axes]\nalpha_v = { from = -1.5, to = 0.4, points = 11 }\n\
-         tau = { from = 0.5, to = 12, points = 13 }\n[fixed]\nmu_prime = -0.3\n",
-    );
+/// The cells of a map's first picture of counts, and the parts into which its curves cut them.
+fn whole_and_cut(case: &Case) -> (Known, Known) {
     let view = View::new(&case.map, &[]).unwrap();
+    let (x, y) = (view.x, view.y.unwrap());
     let axes = case.map.axes();
     let panel = panels::Panel {
         area: page::Area {
@@ -446,42 +442,137 @@ fn cut_cells_have_the_count_of_their_place() {
             right: 800.0,
             bottom: 800.0,
         },
-        x: Scale::between(&axes[view.x].values),
-        y: Scale::between(&axes[view.y.unwrap()].values),
+        x: Scale::between(&axes[x].values),
+        y: Scale::between(&axes[y].values),
     };
-    let index = &view.panels[0];
-    let plane = (view.y.unwrap(), view.x);
-    let known = Known::read(&case.map, Field::NUnstable, index, plane, 600).unwrap();
-    let curves = Curves::of(&case.map, &view).unwrap().list;
-    let pieces: Vec<_> = curves.iter().map(|curve| &curve.piece).collect();
-    let cells = known.plane.clone();
-    let counts = Counts::of(&pieces, &known);
-    let cut = fitted(&panel, known, (&counts, false), 1.0).plane;
+    let known = || Known::read(&case.map, Field::NUnstable, &view.panels[0], (y, x), 600).unwrap();
+    let curves = Curves::of(&case.map, &view).unwrap();
+    let pieces: Vec<_> = curves.list.iter().map(|curve| &curve.piece).collect();
+    let upright = match curves.turned {
+        true => divisions::turned(&known()),
+        false => known(),
+    };
+    let counts = Counts::of(&pieces, &upright);
+    let cut = fitted(&panel, known(), (&counts, curves.turned), 1.0);
+    (known(), cut)
+}
+
+/// The index of the value that is nearest.
+fn nearest(values: &[f64], at: f64) -> usize {
+    let far = |i: &usize| (values[*i] - at).abs();
+    let indices = 0..values.len();
+    indices.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()
+}
+
+/// At how many places whole cells have another count than the place itself, and at how many the
+/// parts do.
+fn wrong_counts(
+    whole: &Known,
+    cut: &Known,
+    places: impl Iterator<Item = (usize, usize)>,
+    counted: impl Fn(f64, f64) -> Option<f64>,
+) -> [u32; 3] {
+    let (cells, parts) = (&whole.plane, &cut.plane);
+    let mut wrong = [0; 3];
+    for (row, column) in places {
+        let (x, y) = (parts.columns[column], parts.rows[row]);
+        let Some(count) = counted(x, y) else { continue };
+        let own = nearest(&cells.rows, y) * cells.columns.len() + nearest(&cells.columns, x);
+        wrong[0] += 1;
+        wrong[1] += u32::from(cells.cells[own] != count);
+        wrong[2] += u32::from(parts.cells[row * parts.columns.len() + column] != count);
+    }
+    wrong
+}
+
+/// Cells cut along all crossing curves have the count of the argument principle nearly everywhere.
+#[test]
+fn cut_cells_have_the_count_of_their_place() {
+    let case = Case::new(
+        "fields = [\"n_unstable\"]\n[axes]\nalpha_v = { from = -1.5, to = 0.4, points = 11 }\n\
+         tau = { from = 0.5, to = 12, points = 13 }\n[fixed]\nmu_prime = -0.3\n",
+    );
+    let (known, cut) = whole_and_cut(&case);
     let counted = |x: f64, y: f64| {
         let count = roots_right_of(Groups::new(-0.3, x, 0.0), y, 0.0);
         count.map(|count| count as f64)
     };
-    let nearest = |values: &[f64], at: f64| {
-        let far = |i: &usize| (values[*i] - at).abs();
-        (0..values.len())
-            .min_by(|a, b| far(a).total_cmp(&far(b)))
-            .unwrap()
-    };
-    let (mut whole, mut wrong, mut all) = (0, 0, 0);
-    for (row, &y) in cut.rows.iter().enumerate().step_by(5) {
-        for (column, &x) in cut.columns.iter().enumerate().step_by(5) {
-            let Some(count) = counted(x, y) else { continue };
-            let own = nearest(&cells.rows, y) * cells.columns.len() + nearest(&cells.columns, x);
-            whole += u32::from(cells.cells[own] != count);
-            wrong += u32::from(cut.cells[row * cut.columns.len() + column] != count);
-            all += 1;
-        }
-    }
+    let [rows, columns] = [&cut.plane.rows, &cut.plane.columns].map(Vec::len);
+    let each = |n: usize| (0..n).step_by(5);
+    let places = each(rows).flat_map(|row| each(columns).map(move |column| (row, column)));
+    let [all, whole, wrong] = wrong_counts(&known, &cut, places, counted);
     assert!(all > 5000 && whole > 100, "{all} {whole}");
     assert!(
         wrong * 20 < whole,
         "{wrong} of {all} are wrong, {whole} before"
     );
+}
+
+/// Cells in the last column and the last row are cut too, where curves end with the axis.
+#[test]
+fn cells_at_the_ends_of_axes_are_cut() {
+    let turning = |x: &str, y: &str| {
+        format!(
+            "system = \"turning\"\nfields = [\"n_unstable\"]\n[axes]\nwidth = {x}\ntau = {y}\n\
+             [fixed]\nzeta = 0.04\n"
+        )
+    };
+    let creeping = |x: &str, y: &str| {
+        format!(
+            "fields = [\"n_unstable\"]\nboundaries = true\n[axes]\nalpha_n = {x}\ntau = {y}\n\
+             [fixed]\nstiffness = 0.3\nv0 = 1.0\nmass = 0.1\n[friction]\n\
+             law = \"rate-and-state\"\nmu0 = 0.6\nv_star = 1.0\ndirect_effect = 0.1\n\
+             evolution_effect = 0.4\nslip_distance = 1.0\n"
+        )
+    };
+    let range = |from: f64, to: f64| format!("{{ from = {from}, to = {to}, points = 9 }}");
+    let sweeps: [(&dyn Fn(&str, &str) -> String, [String; 2]); 2] = [
+        (&turning, [range(0.0, 0.6), range(1.0, 16.0)]),
+        (&creeping, [range(-8.0, 1.0), range(0.0, 12.0)]),
+    ];
+    let mut whole_wrong = 0;
+    for (sweep, [x, y]) in sweeps {
+        let coarse = Case::new(&sweep(&x, &y));
+        let view = View::new(&coarse.map, &[]).unwrap();
+        let (known, cut) = whole_and_cut(&coarse);
+        let (columns, rows) = (&cut.plane.columns, &cut.plane.rows);
+        for (some_columns, some_rows) in
+            [(last(columns), every(rows)), (every(columns), last(rows))]
+        {
+            let list = |all: &[f64], some: &[usize]| {
+                format!("{:?}", some.iter().map(|&i| all[i]).collect::<Vec<_>>())
+            };
+            let lists = [list(columns, &some_columns), list(rows, &some_rows)];
+            let (first, second) = (&lists[view.x], &lists[1 - view.x]);
+            let fine = Case::new(&sweep(first, second));
+            let plane = (view.y.unwrap(), view.x);
+            let fine = fine
+                .map
+                .plane(Field::NUnstable, &view.panels[0], plane, 600);
+            let fine = fine.unwrap();
+            let counted = |x: f64, y: f64| {
+                let (row, column) = (nearest(&fine.rows, y), nearest(&fine.columns, x));
+                Some(fine.cells[row * fine.columns.len() + column])
+            };
+            let places = some_rows
+                .iter()
+                .flat_map(|&row| some_columns.iter().map(move |&column| (row, column)));
+            let [all, whole, wrong] = wrong_counts(&known, &cut, places, counted);
+            assert!(wrong * 10 <= whole, "{wrong} of {all}, {whole} before");
+            whole_wrong += whole;
+        }
+    }
+    assert!(whole_wrong > 50, "{whole_wrong}");
+}
+
+/// Indices of some of the last values: parts of the last cell.
+fn last(values: &[f64]) -> Vec<usize> {
+    (values.len() - 30..values.len()).step_by(5).collect()
+}
+
+/// Indices of some of all values.
+fn every(values: &[f64]) -> Vec<usize> {
+    (0..values.len()).step_by(4).collect()
 }
 
 /// What a sweep does not want traced is not traced for a picture either.
