@@ -10,7 +10,7 @@ use super::page::Area;
 use super::scene::Scene;
 use super::{Print, clip, compose};
 use crate::maps::maker::make_in_memory;
-use crate::setting::SweepSpec;
+use crate::setting::{Parameter, SweepSpec};
 use crate::store::{MapFile, regular};
 use crate::sweep::Plan;
 use crate::sweep::described::root::Provenance;
@@ -31,11 +31,14 @@ fn small(path: &Path, folder: &Path) -> Option<MapFile> {
     let mut spec: SweepSpec = has_axes.then(|| text.parse().unwrap())?;
     let linear = spec.fields.iter().all(|field| field.of_sliding());
     let most = if linear { MOST_LINEAR } else { MOST };
+    let of_vc = spec.fields.iter().any(|field| field.of_vc());
     let plane = Plan::new(spec.clone()).unwrap().boundary_plane;
     for (i, axis) in spec.axes.iter_mut().enumerate() {
         let outer = plane.is_some_and(|(p, q)| i != p && i != q);
         if !outer && axis.values.len() > most {
-            let last = axis.values.len() - 1;
+            // At the longest delays and the largest gain one critical velocity takes half a minute.
+            let half = of_vc && axis.parameter == Parameter::Tau;
+            let last = (axis.values.len() - 1) / if half { 2 } else { 1 };
             axis.values = (0..most)
                 .map(|k| axis.values[k * last / (most - 1)])
                 .collect();
