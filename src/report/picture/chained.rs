@@ -1,5 +1,7 @@
 //! Joins the pieces of a curve, so that dashes go through where one piece meets the next.
 
+use std::collections::HashMap;
+
 use super::scene::Point;
 
 /// Ends that are nearer to one another than this, in pixels, are the same.
@@ -8,12 +10,15 @@ const SAME: f64 = 0.05;
 /// The pieces joined wherever the end of one is an end of another; closed curves end where they
 /// begin.
 pub(super) fn chained(pieces: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
-    let mut left: Vec<Vec<Point>> = pieces.into_iter().filter(|p| p.len() > 1).collect();
+    let mut left = Left::of(pieces.into_iter().filter(|p| p.len() > 1).collect());
     let mut chains = Vec::new();
-    while let Some(mut chain) = left.pop() {
+    for piece in (0..left.pieces.len()).rev() {
+        let Some(mut chain) = left.pieces[piece].take() else {
+            continue;
+        };
         // Behind its end first, then before its start.
         for _ in 0..2 {
-            while let Some(more) = taken_at(&mut left, chain.last().copied()) {
+            while let Some(more) = chain.last().and_then(|end| left.taken_at(*end)) {
                 chain.extend(more.into_iter().skip(1));
             }
             chain.reverse();
@@ -23,18 +28,55 @@ pub(super) fn chained(pieces: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     chains
 }
 
-/// Takes a piece that begins or ends at a place out of the others, turned so that it begins there.
-fn taken_at(pieces: &mut Vec<Vec<Point>>, at: Option<Point>) -> Option<Vec<Point>> {
-    let same = |end: Option<&Point>| {
-        at.zip(end)
-            .is_some_and(|(a, b)| (a.0 - b.0).hypot(a.1 - b.1) < SAME)
-    };
-    let meets = |piece: &Vec<Point>| same(piece.first()) || same(piece.last());
-    let mut piece = pieces.swap_remove(pieces.iter().position(meets)?);
-    if !same(piece.first()) {
-        piece.reverse();
+/// The square of the plane in which a place lies: ends that are the same lie in neighbouring ones.
+fn square((x, y): Point) -> (i64, i64) {
+    ((x / SAME).floor() as i64, (y / SAME).floor() as i64)
+}
+
+/// Whether two ends are the same.
+fn same(a: Point, b: Point) -> bool {
+    (a.0 - b.0).hypot(a.1 - b.1) < SAME
+}
+
+/// The pieces that are in no chain yet.
+struct Left {
+    /// All pieces; none in the place of one that is taken.
+    pieces: Vec<Option<Vec<Point>>>,
+    /// The numbers of the pieces with an end in a square, decreasing.
+    ends: HashMap<(i64, i64), Vec<usize>>,
+}
+
+impl Left {
+    fn of(pieces: Vec<Vec<Point>>) -> Self {
+        let mut ends: HashMap<_, Vec<usize>> = HashMap::new();
+        for (i, piece) in pieces.iter().enumerate().rev() {
+            for end in [piece.first(), piece.last()].into_iter().flatten() {
+                ends.entry(square(*end)).or_default().push(i);
+            }
+        }
+        let pieces = pieces.into_iter().map(Some).collect();
+        Self { pieces, ends }
     }
-    Some(piece)
+
+    /// Takes a piece that begins or ends at a place, turned so that it begins there.
+    fn taken_at(&mut self, at: Point) -> Option<Vec<Point>> {
+        let (column, row) = square(at);
+        let beside = |of: i64| (-1..=1).map(move |step| of.saturating_add(step));
+        let around = beside(column).flat_map(|column| beside(row).map(move |row| (column, row)));
+        let mut piece = around.into_iter().find_map(|square| {
+            let (here, pieces) = (self.ends.get_mut(&square)?, &mut self.pieces);
+            while here.pop_if(|i| pieces[*i].is_none()).is_some() {}
+            let is_end = |end: Option<&Point>| end.is_some_and(|end| same(*end, at));
+            let meets = |piece: &Vec<Point>| is_end(piece.first()) || is_end(piece.last());
+            let mut numbers = here.iter().rev();
+            let found = numbers.find(|i| pieces[**i].as_ref().is_some_and(meets))?;
+            pieces[*found].take()
+        })?;
+        if !same(piece[0], at) {
+            piece.reverse();
+        }
+        Some(piece)
+    }
 }
 
 #[cfg(test)]
