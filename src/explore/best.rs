@@ -101,20 +101,14 @@ impl Searched {
                 "{name} is not searched, but {gains} and tau"
             )));
         }
-        let ends = |axis: &Axis| {
-            let finite = axis.values.iter().copied();
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            })
-        };
         // Friction with a state has best settings, but no robust ones.
         let robust = of_block && spec.fixed.rate_and_state().is_none();
         Ok(Self {
             setting: spec.fixed.clone(),
             units: spec.units.clone(),
             ranges: Ranges {
-                gain: ends(other),
-                tau: ends(tau),
+                gain: other.range(),
+                tau: tau.range(),
             },
             of,
             robust: robust.then_some(Spread::Part(OFF)),

@@ -207,7 +207,8 @@ pub(crate) fn has_speeds(values: &[f64]) -> bool {
     positive.len() > 1 && from < to
 }
 
-fn ends(values: &[f64]) -> (f64, f64) {
+/// The smallest and the largest of some values; 0 and 1 where there are none.
+pub(crate) fn ends(values: &[f64]) -> (f64, f64) {
     let both = values.iter().fold(None, |ends, &v| match ends {
         None => Some((v, v)),
         Some((low, high)) => Some((f64::min(low, v), f64::max(high, v))),

@@ -5,7 +5,7 @@ use super::page::Area;
 use super::panels::Panel;
 use super::stable_area::{delay_at, intervals};
 use crate::linear::curves::{CurveKind, CurvePiece, Vertex};
-use crate::meaning::scale::Scale;
+use crate::meaning::scale::{Scale, ends};
 use crate::report::known::Known;
 use crate::store::map_file::Plane;
 
@@ -21,12 +21,6 @@ pub(super) trait Division {
 
     /// The value of all places in a part; none where the cells in it tell.
     fn value(&self, part: i64) -> Option<f64>;
-}
-
-/// The smallest and the largest of some values.
-fn ends(values: &[f64]) -> (f64, f64) {
-    let ends = |(from, to): (f64, f64), value: &f64| (value.min(from), value.max(to));
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)
 }
 
 /// The value of p at which curves are read: they exclude the end of the axis.

@@ -161,14 +161,11 @@ fn cut(
         return Ok(known);
     }
     let turned = found.turned;
-    let upright = match turned {
-        true => divisions::turned(&known),
-        false => known.clone(),
-    };
     if field == Field::NUnstable {
         let crossings = curves.iter().filter(|c| c.degree_of_stability == 0.0);
         let pieces: Vec<_> = crossings.map(|curve| &curve.piece).collect();
-        let counts = Counts::of(&pieces, &upright);
+        let upright = turned.then(|| divisions::turned(&known));
+        let counts = Counts::of(&pieces, upright.as_ref().unwrap_or(&known));
         return Ok(fitted(panel, known, (&counts, turned), u));
     }
     let bounding = curves.iter().filter(|curve| curve.bounds_stability());
