@@ -1,16 +1,13 @@
 //! A cell of a map instead of flags or a case file: `--map MAP.h5 --at AXIS=VALUE`.
 
 use std::cell::OnceCell;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::maps::look::as_text::CellTexts;
 use crate::report::numbers::unit_behind;
-use crate::setting::amount::Amount;
-use crate::setting::axis::{Axis, nearest};
+use crate::setting::axis::Axis;
 use crate::setting::basin::Basin;
 use crate::setting::point_file::{PointOf, PointSpec};
-use crate::setting::quantity::Quantity;
 use crate::setting::simulation::Simulation;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
@@ -18,12 +15,11 @@ use crate::store::MapFile;
 use crate::store::tiles::Survey;
 use crate::sweep::Plan;
 use crate::text::Shown;
-use crate::text::nearest::did_you_mean;
 
+use super::at::{At, Axes, parse_at};
 use super::failure::Failure;
 use super::open::tell_partial;
 use super::output::warn_beyond_curve;
-use super::parameter_values::{named_amount, quantity_in_units};
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -37,51 +33,6 @@ pub(super) struct CellArgs {
     /// The plan of the map, once it is read.
     #[arg(skip)]
     read: OnceCell<Plan>,
-}
-
-/// A place on an axis, as given by a flag.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct At {
-    name: String,
-    value: Amount,
-}
-
-/// Reads a name and a value. Whether the axis exists depends on the map.
-pub(super) fn parse_at(text: &str) -> Result<At, String> {
-    let (name, value) = named_amount(text, "AXIS=VALUE, for example mu_prime=-0.3")?;
-    let name = name.replace('-', "_");
-    Ok(At { name, value })
-}
-
-impl At {
-    /// The value on the axis `of`, in the units of the map.
-    pub(super) fn value(&self, of: &Quantity, units: &Units) -> Result<f64, Failure> {
-        quantity_in_units(&format!("--at {}", self.name), &self.value, of, units)
-    }
-
-    /// The number of the named axis among `axes`, those of a map.
-    pub(super) fn axis(&self, axes: &[&Quantity]) -> Result<usize, Failure> {
-        let names = || axes.iter().map(|axis| axis.name());
-        let place = names().position(|name| name == self.name);
-        place.ok_or_else(|| {
-            let meant = did_you_mean(&self.name, names());
-            let names: Vec<_> = names().collect();
-            Failure::bad_input_with_help(
-                format!("--at: {} is no axis of this map", self.name),
-                format!("{meant}its axes: {}", names.join(", ")),
-            )
-        })
-    }
-}
-
-impl fmt::Display for At {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = format!("{}={}", self.name, self.value);
-        match text.contains(' ') {
-            true => write!(f, "\"{text}\""),
-            false => f.write_str(&text),
-        }
-    }
 }
 
 impl CellArgs {
@@ -127,15 +78,12 @@ impl CellArgs {
 
     /// The index of the cell along every axis. It also reports the cell.
     fn index(&self, plan: &Plan) -> Result<Vec<usize>, Failure> {
-        self.check_axes(plan)?;
-        let mut index = Vec::new();
+        let index = self.places(plan)?;
         let mut there = Vec::new();
-        for axis in &plan.spec.axes {
-            let place = self.place(axis, &plan.spec.units)?;
+        for (axis, &place) in plan.spec.axes.iter().zip(&index) {
             let unit = unit_behind(&axis.parameter.unit(&plan.spec.units));
             let (name, value) = (axis.parameter.name(), Shown(axis.values[place]));
             there.push(format!("{name} = {value}{unit}"));
-            index.push(place);
         }
         say::note(format_args!("the cell at {}", there.join(", ")));
         Ok(index)
@@ -178,40 +126,24 @@ impl CellArgs {
         text.transpose()
     }
 
-    /// Checks that values are given only for axes.
-    fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
-        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| &axis.parameter).collect();
-        self.at.iter().try_for_each(|at| at.axis(&axes).map(drop))
-    }
-
-    /// The place on an axis of the value nearest to the given one.
-    fn place(&self, axis: &Axis, units: &Units) -> Result<usize, Failure> {
-        let name = axis.parameter.name();
-        let given = self.at.iter().filter(|at| at.name == name);
-        let value = match given.collect::<Vec<_>>()[..] {
-            [] if axis.len() == 1 => return Ok(0),
-            [at] => at.value(&axis.parameter, units)?,
-            [] => {
-                let (low, high) = axis.range();
-                let [low, high, first] = [low, high, axis.values[0]].map(Shown);
-                let help = format!("for example --at {name}={first}; from {low} to {high}");
-                let message = format!("--at {name}=VALUE is not given");
-                return Err(Failure::bad_input_with_help(message, help));
-            }
-            _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
+    /// The place on every axis that has one value or is given one.
+    fn places(&self, plan: &Plan) -> Result<Vec<usize>, Failure> {
+        let places = Axes::from(plan).held(&self.at)?;
+        let place = |(axis, place): (&Axis, Option<usize>)| match place {
+            None if axis.len() == 1 => Ok(0),
+            place => place.ok_or_else(|| not_given(axis)),
         };
-        place_on(&axis.parameter, &axis.values, value)
+        plan.spec.axes.iter().zip(places).map(place).collect()
     }
 }
 
-/// The place on an axis of the value nearest to `value`, which must be within the axis.
-pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usize, Failure> {
-    nearest(values, value).map_err(|[low, high]| {
-        let [value, low, high] = [value, low, high].map(Shown);
-        let message = format!("--at {}={value} is outside the axis", of.name());
-        let help = format!("it goes from {low} to {high}");
-        Failure::bad_input_with_help(message, help)
-    })
+/// The failure without a value on an axis of several.
+fn not_given(axis: &Axis) -> Failure {
+    let name = axis.parameter.name();
+    let (low, high) = axis.range();
+    let [low, high, first] = [low, high, axis.values[0]].map(Shown);
+    let help = format!("for example --at {name}={first}; from {low} to {high}");
+    Failure::bad_input_with_help(format!("--at {name}=VALUE is not given"), help)
 }
 
 /// Refuses other flags of the setting if a cell of a map or a file gives it.
@@ -283,30 +215,4 @@ fn plan_of(path: &Path) -> Result<Plan, Failure> {
     let map = MapFile::open(path)?;
     let plan = map.sweep().and_then(Plan::new);
     plan.map_err(|e| Failure::in_file(e, &path.display().to_string(), &map.sweep_text()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_on_axes_are_read() {
-        for (text, value) in [("mu_prime=-0.3", -0.3), ("mu-prime = 1e-2", 0.01)] {
-            let at = parse_at(text).unwrap();
-            let found = at.value(&Parameter::MuPrime.into(), &Units::default());
-            assert!(at.name == "mu_prime" && matches!(found, Ok(of) if of == value));
-            let axes = [Parameter::Tau, Parameter::MuPrime].map(Quantity::from);
-            let axes = axes.each_ref();
-            assert!(matches!(at.axis(&axes), Ok(1)));
-            assert!(at.axis(&axes[..1]).is_err());
-        }
-        for (text, says) in [
-            ("tau", "AXIS=VALUE"),
-            ("tau=", "finite number"),
-            ("tau=inf", "finite number"),
-        ] {
-            let error = parse_at(text).unwrap_err();
-            assert!(error.contains(says), "{error}");
-        }
-    }
 }

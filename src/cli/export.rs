@@ -12,7 +12,7 @@ use crate::sweep::described::trace::{QUANTITIES, Quantity};
 use crate::text::nearest::did_you_mean;
 use clap::ValueEnum;
 
-use super::cell::{At, parse_at, place_on};
+use super::at::{At, Axes, parse_at};
 use super::failure::Failure;
 use super::open::{held_field, open};
 use super::say;
@@ -90,7 +90,7 @@ fn of_map(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
         ));
     }
     let map = open(&args.file, signals, NOT_EXPORTED)?;
-    let held = held(&map, args)?;
+    let held = Axes::from(&map).held(&args.at)?;
     if table == TableName::Cells {
         let fields = fields(&map, args)?;
         return to.write(signals, NOT_EXPORTED, |out, stop| {
@@ -166,23 +166,6 @@ fn refuse_fields(args: &Args, table: TableName) -> Result<(), Failure> {
     }
     let message = format!("--field has no meaning for --table {}", name(table));
     Err(Failure::bad_input(message))
-}
-
-/// For every axis, the index at which it is held; none where it is free.
-fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
-    let axes: Vec<_> = map.axes().iter().map(|axis| &axis.parameter).collect();
-    let mut held = vec![None; axes.len()];
-    for at in &args.at {
-        let axis = at.axis(&axes)?;
-        let parameter = axes[axis];
-        let value = at.value(parameter, &map.units())?;
-        let place = place_on(parameter, &map.axes()[axis].values, value)?;
-        if held[axis].replace(place).is_some() {
-            let message = format!("--at {} is given twice", parameter.name());
-            return Err(Failure::bad_input(message));
-        }
-    }
-    Ok(held)
 }
 
 /// The requested fields, in this order; all fields without a request.

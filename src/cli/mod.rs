@@ -3,6 +3,7 @@
 //! - `address_space`: limits on memory that the system sets
 //! - `asked`: the setting that a command is asked about: of the block, or of a system from a file
 //! - `asks`: the needs of commands that ask about a point, which determine their flags
+//! - `at`: a place on an axis of a map: `--at AXIS=VALUE`
 //! - `axis_facts`: the facts of an axis, for a sweep and for a map
 //! - `basin`: `slipmap basin`: its starts and its output
 //! - `best`: `slipmap best`
@@ -73,6 +74,7 @@
 mod address_space;
 mod asked;
 mod asks;
+mod at;
 mod axis_facts;
 mod basin;
 mod best;

@@ -5,14 +5,13 @@ use std::path::{Path, PathBuf};
 
 use crate::report::picture::{self, ColourMap, Picture, PictureError, PictureKind, PictureOptions};
 use crate::setting::amount::Amount;
-use crate::setting::quantity::Quantity;
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::store::{MapFile, TraceFile, trace_reader};
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::cell::{At, parse_at};
+use super::at::{At, Axes, parse_at};
 use super::failure::Failure;
 use super::open::{held_field, open};
 use super::parameter_values::{amount_of, in_units};
@@ -185,11 +184,11 @@ fn shown_of(
     args: &Args,
     options: PictureOptions,
 ) -> Result<PictureOptions, Failure> {
-    let axes: Vec<&Quantity> = map.axes().iter().map(|axis| &axis.parameter).collect();
+    let axes = Axes::from(map);
     let at = args.at.iter();
     let at = at.map(|at| {
-        let of = axes[at.axis(&axes)?];
-        Ok((of.clone(), at.value(of, &map.units())?))
+        let (axis, value) = at.on(&axes)?;
+        Ok((axes.of(axis).clone(), value))
     });
     let field = args.field.as_deref().map(|name| held_field(map, name));
     Ok(PictureOptions {
@@ -244,7 +243,7 @@ fn shown(args: &Args) -> Vec<String> {
     let name = |name: &String| Field::from_name(name).map_or(name.clone(), |f| f.name().into());
     let mut words: Vec<String> = args.field.iter().map(name).collect();
     words.extend(kind.map(|kind| kind.get_name().to_owned()));
-    words.extend(args.at.iter().map(At::to_string));
+    words.extend(args.at.iter().map(At::in_file_name));
     if args.size != PictureOptions::default().size {
         words.push(format!("{}x{}", args.size.0, args.size.1));
     }

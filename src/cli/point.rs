@@ -9,7 +9,7 @@ use crate::model::stop::Stop;
 use crate::report::picture::{self, Picture, PointPicture};
 use crate::setting::Parameter;
 use crate::setting::amount::Amount;
-use crate::setting::system::SPEEDS;
+use crate::setting::system::SpeedUnit;
 use crate::setting::units::Units;
 use crate::text::Shown;
 
@@ -66,9 +66,8 @@ fn parse_roots(text: &str) -> Result<u8, String> {
 }
 
 fn parse_rpm(text: &str) -> Result<f64, String> {
-    let [least, most] = SPEEDS;
     let speed = text.trim().parse().ok();
-    let speed = speed.filter(|speed| (least..=most).contains(speed));
+    let speed = speed.and_then(|speed| SpeedUnit::RevolutionsPerMinute.checked(speed).ok());
     speed.ok_or_else(|| "expected a number greater than 0, such as 3000".to_owned())
 }
 

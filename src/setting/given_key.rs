@@ -4,9 +4,8 @@ use super::axis::Axis;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::spec_values::{read_list, read_range};
-use super::system::{SPEEDS, SpeedUnit, Turn};
+use super::system::{SpeedUnit, Turn};
 use super::units::Units;
-use crate::text::Shown;
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// What a key gives: a parameter, and how its numbers are meant.
@@ -68,16 +67,8 @@ impl GivenKey {
 
 /// A speed > 0 in its unit.
 fn read_speed(entry: &Entry, unit: SpeedUnit) -> Result<f64, SpecError> {
-    let speed = entry.number()?;
-    let [least, most] = SPEEDS;
-    if (least..=most).contains(&speed) {
-        return Ok(speed);
-    }
-    Err(entry.error(format!(
-        "{} {} is outside its range: greater than 0, from {least:e} to {most:e}",
-        Shown(speed),
-        unit.name()
-    )))
+    let speed = unit.checked(entry.number()?);
+    speed.map_err(|error| entry.error(error.message))
 }
 
 /// The periods of speeds in either order, increasing.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::given_key::GivenKey;
 use super::parameter::Parameter;
 use super::quantity::Quantity;
-use super::system::{SpeedUnit, SystemModel, shipped};
+use super::system::{NO_SPEED, SpeedUnit, SystemModel, shipped};
 use super::units::Units;
 use super::values::Setting;
 use crate::text::document::Document;
@@ -106,14 +106,14 @@ impl GivenSystem {
             span: Some(entry.key_span.clone()),
             ..error
         };
-        let speed = SpeedUnit::named(entry.key);
-        if let Some(unit) = speed.filter(|_| self.model.speed_axis.is_some()) {
+        if let Some(unit) = self.model.takes_speed(entry.key) {
             return GivenKey::of_speed(unit, units).map_err(at);
         }
         let all = self.model.quantities();
         let names: Vec<&str> = all.iter().map(Quantity::name).collect();
         let meant = did_you_mean(entry.key, names.iter().copied());
-        let no_speed = speed.map_or("", |_| "; only a system with a speed_axis takes a speed");
+        let speed = SpeedUnit::named(entry.key);
+        let no_speed = speed.map_or(String::new(), |_| format!("; {NO_SPEED}"));
         let message = format!("the system has no parameter `{}`", entry.key);
         Err(at(SpecError::whole(message).help(format!(
             "{meant}its parameters: {}{no_speed}",

@@ -135,6 +135,51 @@ fn a_speed_is_an_axis_of_a_sweep() {
     assert!(["spindle speed", "(rpm)", "3000"].map(|said| picture.contains(said)) == [true; 3]);
 }
 
+/// The value of `--at` may be a speed, whatever the unit of the axis of the system.
+#[test]
+fn an_axis_is_held_at_a_speed() {
+    let folder = folder();
+    run(&folder, "lobes.toml");
+    let at = |given: &str| told(&folder, &["export", "map.h5", "--at", given]);
+    let held = at("tau=0.02");
+    assert_eq!(held.lines().count(), 8);
+    for speed in ["rpm=3000", "Hz=50", "rad/s=314.16"] {
+        assert_eq!(at(speed), held, "{speed}");
+    }
+    let point = ["point", "--map", "map.h5", "--at", "w=0.2"];
+    let of_point = |given| told(&folder, &[&point[..], &["--at", given]].concat());
+    assert_eq!(of_point("rpm=3000"), of_point("tau=0.02"));
+    let line = |given: &str| {
+        let args = ["plot", "map.h5", "--at", given, "-o", "line.svg"];
+        expect(&folder.run(&args), 0, "");
+        std::fs::read_to_string(folder.path().join("line.svg")).unwrap()
+    };
+    assert_eq!(line("rpm=3000"), line("tau=0.02"));
+    let named = folder.run(&["plot", "map.h5", "--at", "rad/s=314.16"]);
+    expect(&named, 0, "");
+    let picture = folder.path().join("map.rad_per_s=314.16.png");
+    assert!(picture.exists(), "{}", err(&named));
+    let twice = ["export", "map.h5", "--at", "tau=0.02", "--at", "rpm=3000"];
+    expect(&folder.run(&twice), 2, "--at tau is given twice");
+    for (given, says) in [
+        (
+            "rpm=9000",
+            "--at rpm=9000: tau=0.006666666666666667 is outside",
+        ),
+        ("rpm=0", "0 rpm is outside its range: greater than 0"),
+        ("rpm=50Hz", "Hz is a unit of rate (1/time)"),
+    ] {
+        for command in ["export", "plot"] {
+            let refused = folder.run(&[command, "map.h5", "--at", given]);
+            let says = match (command, given) {
+                ("plot", "rpm=9000") => "is outside the map: 0.01 to 0.06",
+                _ => says,
+            };
+            expect(&refused, 2, says);
+        }
+    }
+}
+
 /// 60/τ needs seconds: dimensionless numbers have no rpm, wherever they are shown.
 #[test]
 fn without_units_no_speed_has_one() {
@@ -182,6 +227,11 @@ fn without_units_no_speed_has_one() {
     }
     let no_axis = ["point", "--system", "pd", "--rpm", "3000", "--units", "SI"];
     expect(&folder.run(&no_axis), 2, "period of a rotation");
+    for command in ["export", "plot"] {
+        let refused = folder.run(&[command, "map.h5", "--at", "rpm=3000"]);
+        expect(&refused, 2, "rpm needs the unit of time");
+        assert!(err(&refused).contains("type the delay: --at tau=VALUE"));
+    }
     let rpm = lobes.replace("tau = {", "rpm = {");
     std::fs::write(folder.path().join("rpm.toml"), rpm).unwrap();
     let refused = folder.run(&["plan", "rpm.toml"]);

@@ -38,7 +38,7 @@ use std::sync::Arc;
 
 use parameter::OwnParameter;
 
-pub(crate) use speed::SPEEDS;
+pub(crate) use speed::NO_SPEED;
 pub use speed::{SpeedAxis, SpeedUnit, Turn};
 
 use crate::linear::general::System;

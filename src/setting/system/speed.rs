@@ -3,7 +3,7 @@
 use super::SystemModel;
 use crate::setting::unit::Unit;
 use crate::setting::units::Units;
-use crate::text::SpecError;
+use crate::text::{Shown, SpecError};
 
 /// A speed derived from a delay that is a period.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,8 +25,11 @@ pub enum SpeedUnit {
     RadiansPerSecond,
 }
 
+/// What is said where a speed is given to a system that takes none.
+pub(crate) const NO_SPEED: &str = "only a system with a speed_axis takes a speed";
+
 /// The smallest and the largest speed that can be given, in its unit.
-pub(crate) const SPEEDS: [f64; 2] = [1e-12, 1e12];
+const SPEEDS: [f64; 2] = [1e-12, 1e12];
 
 /// A period times its speed, in the units of both: by it either follows from the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +70,22 @@ impl SpeedUnit {
         }
     }
 
+    /// A speed that is in the range of those that can be given.
+    ///
+    /// # Errors
+    /// Says the range.
+    pub(crate) fn checked(self, speed: f64) -> Result<f64, SpecError> {
+        let [least, most] = SPEEDS;
+        match (least..=most).contains(&speed) {
+            true => Ok(speed),
+            false => Err(SpecError::whole(format!(
+                "{} {} is outside its range: greater than 0, from {least:e} to {most:e}",
+                Shown(speed),
+                self.name()
+            ))),
+        }
+    }
+
     /// What a speed in this unit times its period in `units` is.
     ///
     /// # Errors
@@ -103,6 +122,12 @@ impl SpeedAxis {
 }
 
 impl SystemModel {
+    /// The unit of this name, if the system takes a speed in it in the place of its delay.
+    #[must_use]
+    pub(crate) fn takes_speed(&self, name: &str) -> Option<SpeedUnit> {
+        SpeedUnit::named(name).filter(|_| self.speed_axis.is_some())
+    }
+
     /// The speed of its delay and how it is computed, where its numbers are in `units`; none
     /// without a speed or without a known unit of time.
     #[must_use]
