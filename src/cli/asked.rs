@@ -67,6 +67,17 @@ impl Asked {
     }
 }
 
+/// The speed of which a delay > 0 is the period, beside its name and its unit; none where a setting
+/// has no speed, and without a known unit of time.
+pub(super) fn speed_at<'s>(
+    setting: &'s Setting,
+    units: &Units,
+    delay: f64,
+) -> Option<(&'s str, f64, &'static str)> {
+    let (speed, turn) = setting.system()?.speed(units)?;
+    (delay > 0.0).then(|| (&*speed.name, turn.over(delay), speed.unit.name()))
+}
+
 /// What is stable or not, in words; `block` for the block.
 pub(super) fn subject<'s>(setting: &'s Setting, block: &'s str) -> &'s str {
     match setting.system().map(|model| &*model.title) {

@@ -201,7 +201,7 @@ impl Args {
 
     /// The system from a file, and the parameter of it that is searched.
     fn asked_of_system(&self) -> Result<(Asked, Quantity), Failure> {
-        let flags = self.parameters.any_but(&OTHERS);
+        let flags = self.parameters.any_but_units(&OTHERS);
         alone("--system", flags || self.control.is_some())?;
         self.parameters.refuse_units()?;
         let robust = "leave it out: gain, delay and mu_prime may be off, and mu_prime is of a \
@@ -220,9 +220,8 @@ impl Args {
             }
         }
         let flag = |parameter| self.parameters.given(parameter);
-        let asked = self
-            .system
-            .read_but_delay(self.parameters.sets(), &Units::default(), flag)?;
+        let (sets, units) = (self.parameters.sets(), self.parameters.units());
+        let asked = self.system.read_but_delay(sets, &units, flag)?;
         let asked = asked.ok_or_else(|| Failure::bad_input("--system is not given"))?;
         let searched = self.searched(&asked.setting)?;
         let delay = !asked.setting.get(Parameter::Tau).is_nan();

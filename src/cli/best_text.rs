@@ -11,7 +11,7 @@ use crate::report::numbers::{counted, rounded, unit_behind};
 use crate::setting::{Field, Parameter};
 use crate::text::finite;
 
-use super::asked::subject;
+use super::asked::{speed_at, subject};
 use super::margins;
 use super::margins::of_what_is_given;
 use super::output::tell_dimensionless;
@@ -51,12 +51,6 @@ fn yes_or_no(certified: bool) -> &'static str {
     if certified { "yes" } else { "no" }
 }
 
-/// The unit of what is searched, behind a number; a system's own parameter is told without.
-fn unit_of_searched(told: &Recommended) -> String {
-    let known = told.searched.known();
-    known.map_or_else(String::new, |p| unit_behind(&told.units.of_parameter(p)))
-}
-
 /// Prints what was found for people.
 pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
     let Recommended {
@@ -83,9 +77,12 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
         writeln!(out, "{has}{}", nothing_decays(!found.regions.is_empty()))?;
     }
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let gain = unit_of_searched(told);
+    let gain = unit_behind(&searched.unit(units));
     row(searched.name(), short(best.gain) + &gain)?;
     row("tau", short(best.tau) + &time)?;
+    if let Some((name, speed, unit)) = speed_at(&told.setting, units, best.tau) {
+        row(name, format!("{} {unit}", short(speed)))?;
+    }
     let unit = |field: Field| unit_behind(&field.unit(units));
     row(
         Field::Abscissa.name(),
@@ -99,7 +96,7 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
     row("certified", yes_or_no(best.certified).into())?;
     match &told.point {
         Point::Block(point) => print_block(point, told, &mut row)?,
-        Point::System(point) => print_system(point, searched.name(), &mut row)?,
+        Point::System(point) => print_system(point, told, &mut row)?,
     }
     let range = |(from, to): (f64, f64), unit: &str| {
         format!("{}{unit} to {}{unit}", short(from), short(to))
@@ -141,23 +138,27 @@ fn print_block(
 /// What is told of a system from a file besides its optimum.
 fn print_system(
     point: &SystemPoint,
-    searched: &str,
+    told: &Recommended,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let own = point.parameters.iter();
-    let own = own.map(|(name, value)| (&**name, Some(*value)));
-    for (name, value) in own.chain([("memory", point.memory), ("latency", point.latency)]) {
+    let units = &told.units;
+    let time = unit_behind(&units.time());
+    let searched = told.searched.name();
+    for (own, value) in told.setting.own().filter(|(own, _)| own.name != searched) {
+        row(&own.name, short(value) + &unit_behind(&own.unit))?;
+    }
+    for (name, value) in [("memory", point.memory), ("latency", point.latency)] {
         if let Some(value) = value.filter(|_| name != searched) {
-            row(name, short(value))?;
+            row(name, short(value) + &time)?;
         }
     }
     if let Some(margin) = finite(point.stability.delay_margin) {
-        row("delay_margin", short(margin))?;
+        row("delay_margin", short(margin) + &time)?;
     }
     if point.memory.is_none() {
         return Ok(());
     }
-    let margin = finite(point.latency_margin).map(short);
+    let margin = finite(point.latency_margin).map(|margin| short(margin) + &time);
     let margin = margin.unwrap_or_else(|| "infinite, or not known".into());
     row("latency_margin", margin)
 }
@@ -193,7 +194,7 @@ fn print_robust(
     let found = &of.robust;
     row(
         told.searched.name(),
-        short(found.gain) + &unit_of_searched(told),
+        short(found.gain) + &unit_behind(&told.searched.unit(&told.units)),
     )?;
     row("tau", short(found.tau) + &time)?;
     let abscissa = match found.abscissa.is_finite() {
@@ -288,8 +289,8 @@ fn print_regions(out: &mut impl Write, told: &Recommended) -> std::io::Result<()
         "kind",
     ])?;
     if !units.dimensionless() {
-        let (gain, tau) = (told.searched.unit(units), units.time());
-        line([&gain, &tau, &tau, &units.angular_frequency(), "", ""])?;
+        let (gain, tau) = (unit_behind(&told.searched.unit(units)), units.time());
+        line([gain.trim(), &tau, &tau, &units.angular_frequency(), "", ""])?;
     }
     for best in optima {
         let time = best.relaxation_time().map_or("none".into(), short);

@@ -259,7 +259,7 @@ impl<A: Asks> ParameterArgs<A> {
             false => Ok(()),
             true => Err(Failure::bad_input_with_help(
                 "a number has a unit, and units of a system from a file are not known here",
-                "give all numbers in the units that the system's file means",
+                "say the units of the system, as in --units SI; or give all numbers in them",
             )),
         }
     }

@@ -11,7 +11,7 @@ use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::text::{Shown, finite};
 
-use super::asked::{Asked, subject};
+use super::asked::{Asked, speed_at, subject};
 use super::digits::Digits;
 use super::inputs_line;
 use super::margins::of_fit;
@@ -175,9 +175,8 @@ fn print_system(
         let value = Shown(setting.get(*parameter));
         row(parameter.name(), format!("{value}{unit}"))?;
     }
-    if let Some((speed, turn)) = speed_of(asked).filter(|_| point.tau > 0.0) {
-        let (value, unit) = (digits.of(turn.over(point.tau)), speed.unit.name());
-        row(&speed.name, format!("{value} {unit}"))?;
+    if let Some((name, speed, unit)) = speed_at(setting, units, point.tau) {
+        row(name, format!("{} {unit}", digits.of(speed)))?;
     }
     if !point.line_of_delays {
         row(
@@ -189,7 +188,8 @@ fn print_system(
         return Ok(());
     }
     let margin = finite(point.latency_margin);
-    let margin = margin.map_or("infinite, or not known".into(), |m| digits.of(m));
+    let time = unit_behind(&units.time());
+    let margin = margin.map_or("infinite, or not known".into(), |m| digits.of(m) + &time);
     row("latency_margin", margin)
 }
 
@@ -316,21 +316,12 @@ fn print_intervals(
     if intervals.is_empty() {
         row("stable delays", "none".into())?;
     }
-    for [from, to] in intervals.iter().take(INTERVALS_SHOWN) {
+    let text = |[from, to]: [f64; 2]| {
         let unit = if to.is_finite() { &time } else { "" };
-        let (from, to) = (digits.of(*from), digits.of(*to));
-        row("stable delays", format!("{from}{time} < tau < {to}{unit}"))?;
-    }
-    match intervals.len().saturating_sub(INTERVALS_SHOWN) {
-        more if stability.stable_delays_truncated => {
-            row("", format!("and more than {more} further intervals"))
-        }
-        0 => Ok(()),
-        more => row(
-            "",
-            format!("and {more} further intervals (--json lists them)"),
-        ),
-    }
+        let (from, to) = (digits.of(from), digits.of(to));
+        format!("{from}{time} < tau < {to}{unit}")
+    };
+    print_each(stability, ("stable delays", "them"), text, row)
 }
 
 /// The stable delays as speeds, in the order of the delays.
@@ -338,19 +329,39 @@ fn print_speeds(
     stability: &Stability,
     (speed, turn): (&SpeedAxis, Turn),
     digits: Digits,
-    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+    row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let (name, unit) = (&speed.name, speed.unit.name());
-    let intervals = stability.stable_delays.iter().flatten();
-    for &[from, to] in intervals.take(INTERVALS_SHOWN) {
+    let text = |[from, to]: [f64; 2]| {
         let [slowest, fastest] = [to, from].map(|delay| digits.of(turn.over(delay)));
-        let text = match (to.is_finite(), from > 0.0) {
+        match (to.is_finite(), from > 0.0) {
             (true, true) => format!("{slowest} {unit} < {name} < {fastest} {unit}"),
             (true, false) => format!("{name} > {slowest} {unit}"),
             (false, true) => format!("{name} < {fastest} {unit}"),
             (false, false) => "all".into(),
-        };
-        row("stable speeds", text)?;
+        }
+    };
+    print_each(stability, ("stable speeds", "their delays"), text, row)
+}
+
+/// A row of this name for each of the first stable intervals of the delay, and how many more there
+/// are. The other word says what of them the JSON lists.
+fn print_each(
+    stability: &Stability,
+    (name, listed): (&str, &str),
+    text: impl Fn([f64; 2]) -> String,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let intervals = stability.stable_delays.as_deref().unwrap_or_default();
+    for interval in intervals.iter().take(INTERVALS_SHOWN) {
+        row(name, text(*interval))?;
     }
-    Ok(())
+    let further = match intervals.len().saturating_sub(INTERVALS_SHOWN) {
+        more if stability.stable_delays_truncated => {
+            format!("and more than {more} further intervals")
+        }
+        0 => return Ok(()),
+        more => format!("and {more} further intervals (--json lists {listed})"),
+    };
+    row("", further)
 }

@@ -240,6 +240,81 @@ fn without_units_no_speed_has_one() {
     assert!(message.contains("rpm.toml:5:1") && message.contains("needs the unit of time"));
 }
 
+/// Where more stable delays follow than are told, so do speeds.
+#[test]
+fn how_many_more_speeds_are_stable_is_told() {
+    let folder = folder();
+    let args = "point --system spindle.toml --units SI --rpm 3000 --set w=0.11 --set zeta=0.052";
+    let text = told(&folder, &args.split(' ').collect::<Vec<_>>());
+    let of = |name: &str| text.lines().filter(|line| line.contains(name)).count();
+    assert_eq!(
+        (of("stable delays"), of("stable speeds")),
+        (12, 12),
+        "{text}"
+    );
+    let further = |end: &str| {
+        let line = text.lines().find(|line| line.ends_with(end));
+        let number = line.and_then(|line| line.trim().strip_prefix("and ")?.split(' ').next());
+        number.and_then(|number| number.parse::<u32>().ok())
+    };
+    let delays = further("further intervals (--json lists them)");
+    assert!(delays.is_some_and(|more| more > 0), "{text}");
+    assert_eq!(further("(--json lists their delays)"), delays, "{text}");
+}
+
+/// The best setting of a system has the units that are said, and the speed of its delay.
+#[test]
+fn best_settings_are_told_in_units() {
+    let folder = folder();
+    let best = |more: &str| {
+        let args = "best --system spindle.toml --search w --search-from 0.2 --search-to 0.3";
+        told(
+            &folder,
+            &format!("{args} {more}").split(' ').collect::<Vec<_>>(),
+        )
+    };
+    let text = best("--units SI --tau-from 10ms --tau-to 30ms");
+    let rows: Vec<(&str, &str)> = text
+        .lines()
+        .filter_map(|line| Some((line.get(2..18)?.trim(), line.get(19..)?)))
+        .collect();
+    let row = |name: &str| rows.iter().find(|row| row.0 == name).unwrap().1;
+    let number = |name: &str, unit: &str| -> f64 {
+        let number = row(name).strip_suffix(unit);
+        number
+            .unwrap_or_else(|| panic!("{name}: {text}"))
+            .parse()
+            .unwrap()
+    };
+    let turns = number("tau", " s") * number("spindle speed", " rpm");
+    assert!((turns / 60.0 - 1.0).abs() < 1e-7, "{text}");
+    assert_eq!(row("omega"), "600 rad/s");
+    assert!(number("abscissa", " s-1") < 0.0);
+    assert!(number("delay_margin", " s") > 0.0);
+    assert_eq!(row("searched"), "w 0.2 to 0.3, tau 0.01 s to 0.03 s");
+    let plain = best("--tau-from 0.01 --tau-to 0.03");
+    assert!(!plain.contains("rpm") && !plain.contains(" s\n"), "{plain}");
+    let json = |more: &str| -> serde_json::Value {
+        serde_json::from_str(&best(&format!("{more} --json"))).unwrap()
+    };
+    let in_units = json("--units SI --tau-from 10ms --tau-to 30ms");
+    assert_eq!(in_units["inputs"]["units"][2], "s");
+    assert_eq!(
+        in_units["best"],
+        json("--tau-from 0.01 --tau-to 0.03")["best"]
+    );
+    let args = [
+        "best",
+        "--system",
+        "spindle.toml",
+        "--search",
+        "w",
+        "--tau-to",
+        "3ms",
+    ];
+    expect(&folder.run(&args), 2, "--units SI");
+}
+
 /// Delays in ms have the same speeds, and lengths in mm are told in mm.
 #[test]
 fn axes_have_the_declared_units() {
