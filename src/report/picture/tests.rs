@@ -508,61 +508,64 @@ fn cut_cells_have_the_count_of_their_place() {
     );
 }
 
+/// A sweep of lobes of turning with these widths and delays.
+fn turning(width: &str, tau: &str) -> String {
+    format!(
+        "system = \"turning\"\nfields = [\"n_unstable\"]\n[axes]\nwidth = {width}\ntau = {tau}\n\
+         [fixed]\nzeta = 0.04\n"
+    )
+}
+
+/// A sweep of load control under rate-and-state friction with these gains and delays.
+fn creeping(alpha_n: &str, tau: &str) -> String {
+    format!(
+        "fields = [\"n_unstable\"]\nboundaries = true\n[axes]\nalpha_n = {alpha_n}\ntau = {tau}\n\
+         [fixed]\nstiffness = 0.3\nv0 = 1.0\nmass = 0.1\n[friction]\nlaw = \"rate-and-state\"\n\
+         mu0 = 0.6\nv_star = 1.0\ndirect_effect = 0.1\nevolution_effect = 0.4\n\
+         slip_distance = 1.0\n"
+    )
+}
+
+/// At how many places in the last column and the last row whole cells are wrong, where parts are so
+/// at a tenth of them at most.
+fn wrong_at_ends(sweep: fn(&str, &str) -> String, ranges: [[f64; 2]; 2]) -> u32 {
+    let range = |[from, to]: [f64; 2]| format!("{{ from = {from}, to = {to}, points = 9 }}");
+    let [first, second] = ranges.map(range);
+    let coarse = Case::new(&sweep(&first, &second));
+    let view = View::new(&coarse.map, &[]).unwrap();
+    let (known, cut) = whole_and_cut(&coarse);
+    let (columns, rows) = (&cut.plane.columns, &cut.plane.rows);
+    let list = |all: &[f64], some: &[usize]| {
+        let some: Vec<f64> = some.iter().map(|&i| all[i]).collect();
+        format!("{some:?}")
+    };
+    let ends = [(last(columns), every(rows)), (every(columns), last(rows))];
+    let wrong = ends.map(|(some_columns, some_rows)| {
+        let lists = [list(columns, &some_columns), list(rows, &some_rows)];
+        let fine = Case::new(&sweep(&lists[view.x], &lists[1 - view.x])).map;
+        let plane = (view.y.unwrap(), view.x);
+        let fine = fine.plane(Field::NUnstable, &view.panels[0], plane, 600);
+        let fine = fine.unwrap();
+        let counted = |x: f64, y: f64| {
+            let (row, column) = (nearest(&fine.rows, y), nearest(&fine.columns, x));
+            Some(fine.cells[row * fine.columns.len() + column])
+        };
+        let places = some_rows
+            .iter()
+            .flat_map(|&row| some_columns.iter().map(move |&column| (row, column)));
+        let [all, whole, wrong] = wrong_counts(&known, &cut, places, counted);
+        assert!(wrong * 10 <= whole, "{wrong} of {all}, {whole} before");
+        whole
+    });
+    wrong.iter().sum()
+}
+
 /// Cells in the last column and the last row are cut too, where curves end with the axis.
 #[test]
 fn cells_at_the_ends_of_axes_are_cut() {
-    let turning = |x: &str, y: &str| {
-        format!(
-            "system = \"turning\"\nfields = [\"n_unstable\"]\n[axes]\nwidth = {x}\ntau = {y}\n\
-             [fixed]\nzeta = 0.04\n"
-        )
-    };
-    let creeping = |x: &str, y: &str| {
-        format!(
-            "fields = [\"n_unstable\"]\nboundaries = true\n[axes]\nalpha_n = {x}\ntau = {y}\n\
-             [fixed]\nstiffness = 0.3\nv0 = 1.0\nmass = 0.1\n[friction]\n\
-             law = \"rate-and-state\"\nmu0 = 0.6\nv_star = 1.0\ndirect_effect = 0.1\n\
-             evolution_effect = 0.4\nslip_distance = 1.0\n"
-        )
-    };
-    let range = |from: f64, to: f64| format!("{{ from = {from}, to = {to}, points = 9 }}");
-    let sweeps: [(&dyn Fn(&str, &str) -> String, [String; 2]); 2] = [
-        (&turning, [range(0.0, 0.6), range(1.0, 16.0)]),
-        (&creeping, [range(-8.0, 1.0), range(0.0, 12.0)]),
-    ];
-    let mut whole_wrong = 0;
-    for (sweep, [x, y]) in sweeps {
-        let coarse = Case::new(&sweep(&x, &y));
-        let view = View::new(&coarse.map, &[]).unwrap();
-        let (known, cut) = whole_and_cut(&coarse);
-        let (columns, rows) = (&cut.plane.columns, &cut.plane.rows);
-        for (some_columns, some_rows) in
-            [(last(columns), every(rows)), (every(columns), last(rows))]
-        {
-            let list = |all: &[f64], some: &[usize]| {
-                format!("{:?}", some.iter().map(|&i| all[i]).collect::<Vec<_>>())
-            };
-            let lists = [list(columns, &some_columns), list(rows, &some_rows)];
-            let (first, second) = (&lists[view.x], &lists[1 - view.x]);
-            let fine = Case::new(&sweep(first, second));
-            let plane = (view.y.unwrap(), view.x);
-            let fine = fine
-                .map
-                .plane(Field::NUnstable, &view.panels[0], plane, 600);
-            let fine = fine.unwrap();
-            let counted = |x: f64, y: f64| {
-                let (row, column) = (nearest(&fine.rows, y), nearest(&fine.columns, x));
-                Some(fine.cells[row * fine.columns.len() + column])
-            };
-            let places = some_rows
-                .iter()
-                .flat_map(|&row| some_columns.iter().map(move |&column| (row, column)));
-            let [all, whole, wrong] = wrong_counts(&known, &cut, places, counted);
-            assert!(wrong * 10 <= whole, "{wrong} of {all}, {whole} before");
-            whole_wrong += whole;
-        }
-    }
-    assert!(whole_wrong > 50, "{whole_wrong}");
+    let wrong = wrong_at_ends(turning, [[0.0, 0.6], [1.0, 16.0]])
+        + wrong_at_ends(creeping, [[-8.0, 1.0], [0.0, 12.0]]);
+    assert!(wrong > 50, "{wrong}");
 }
 
 /// Indices of some of the last values: parts of the last cell.
