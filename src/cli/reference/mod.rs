@@ -297,8 +297,8 @@ fn system_files(page: &mut String) {
          whatever the unit of `speed_axis`: `rpm = { from = 1000, to = 6000, points = 200 }` in \
          `[axes]`, or one number in `[fixed]`. Values are evenly spaced in the speed; the axis of \
          the map is `tau`, increasing. `slipmap point` takes `--rpm` with `--units`, and `slipmap \
-         export` has a column of the speed behind `tau`. `--at rpm=3000` holds the axis of a map at \
-         the delay of that speed.",
+         export` has a column of the speed behind `tau`. `--at rpm=3000` holds the axis of a map \
+         at the delay of that speed.",
     );
     heading(page, 2, "Limits");
     paragraph(
