@@ -84,7 +84,8 @@ fn trimmed(text: &str) -> &str {
     }
 }
 
-fn with_minus(text: &str) -> String {
+/// The text of a number with a minus sign in the place of hyphens; zero has none.
+pub(crate) fn with_minus(text: &str) -> String {
     let zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
     if zero {
         text.trim_start_matches('-').to_owned()

@@ -8,6 +8,7 @@ use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, suffix};
 use crate::fit::FittedLaw;
 use crate::meaning::colour::{self, SOFT_INK, STABLE_TINT};
+use crate::meaning::numbers::with_minus;
 use crate::meaning::scale::Scale;
 use crate::report::numbers::with_error;
 use crate::setting::Parameter;
@@ -75,6 +76,7 @@ fn notes(of: &FitPicture) -> Vec<Rich> {
     if let Ok(Some(sliding)) = of.fit.setting.fitted_sliding() {
         let unit = unit(Parameter::MuPrime);
         let (value, error) = with_error(sliding.at.mu_prime, sliding.mu_prime_error);
+        let value = with_minus(&value);
         let text = format!(" = {value} ± {error}{}", suffix(&unit, " ", ""));
         notes.push(Rich::symbol(Parameter::MuPrime).and(&text));
     }
