@@ -120,7 +120,10 @@ impl<'a> Counts<'a> {
     /// How many roots come to the right half-plane as q grows, beside the q where they do,
     /// increasing; none where a curve says nothing about that.
     fn changes(&self, p: f64) -> Option<Vec<(f64, i64)>> {
-        let p = before_end(p, self.reach);
+        let p = match p == self.reach.1 {
+            true => before_end(p, self.reach),
+            false => p,
+        };
         let mut changes = Vec::new();
         for piece in self.pieces {
             if let Some(q) = delay_at(&piece.vertices, p) {
