@@ -74,7 +74,11 @@ impl Axes<'_> {
             let place = at.place(self, (axis, value))?;
             if held[axis].replace(place).is_some() {
                 let name = self.of(axis).name();
-                return Err(Failure::bad_input(format!("--at {name} is given twice")));
+                let message = match name == at.name {
+                    true => format!("--at {name} is given twice"),
+                    false => format!("--at {at}: {name} is given twice"),
+                };
+                return Err(Failure::bad_input(message));
             }
         }
         Ok(held)
@@ -88,7 +92,7 @@ impl Axes<'_> {
 
 impl At {
     /// The number of the axis, and the value on it in the units of the map. The name may be the
-    /// unit of the speed whose period the delay is.
+    /// unit of the speed whose period the delay is: then it is the value of the nearest speed.
     pub(super) fn on(&self, axes: &Axes) -> Result<(usize, f64), Failure> {
         let Self { name, value } = self;
         if let Some(axis) = axes.named(name) {
@@ -99,13 +103,15 @@ impl At {
         let speed = axes.system.and_then(|system| system.takes_speed(name));
         let delay = axes.named(Parameter::Tau.name());
         if let (Some(unit), Some(delay)) = (speed, delay) {
-            return Ok((delay, self.period(unit, &axes.units)?));
+            let period = self.period(unit, &axes.units)?;
+            return Ok((delay, self.of_nearest_speed(axes, (delay, period))?));
         }
         let names = || axes.all.iter().map(|(axis, _)| axis.name());
         let meant = did_you_mean(name, names());
-        let no_speed = match SpeedUnit::named(name).filter(|_| speed.is_none()) {
-            Some(_) => format!("; {NO_SPEED}"),
-            None => String::new(),
+        let no_speed = match (SpeedUnit::named(name), speed) {
+            (Some(_), None) => format!("; {NO_SPEED}"),
+            (Some(_), Some(_)) => "; tau, whose speed it would be, is none of them".into(),
+            (None, _) => String::new(),
         };
         let names: Vec<_> = names().collect();
         Err(Failure::bad_input_with_help(
@@ -134,6 +140,16 @@ impl At {
             Ok(turn.over(speed.map_err(of_value)?))
         });
         period.map_err(|error| Failure::in_file(error, "--at", &text))
+    }
+
+    /// The delay on its axis whose speed is nearest to that of `period`, which must be within the
+    /// axis.
+    fn of_nearest_speed(&self, axes: &Axes, (axis, period): (usize, f64)) -> Result<f64, Failure> {
+        self.place(axes, (axis, period))?;
+        let delays = axes.all[axis].1;
+        let apart = |delay: &f64| (1.0 / delay - 1.0 / period).abs();
+        let nearest = delays.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        Ok(nearest.copied().unwrap_or(period))
     }
 
     /// The place on its axis of the value nearest to `value`, which must be within the axis.

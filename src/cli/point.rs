@@ -66,9 +66,10 @@ fn parse_roots(text: &str) -> Result<u8, String> {
 }
 
 fn parse_rpm(text: &str) -> Result<f64, String> {
-    let speed = text.trim().parse().ok();
-    let speed = speed.and_then(|speed| SpeedUnit::RevolutionsPerMinute.checked(speed).ok());
-    speed.ok_or_else(|| "expected a number greater than 0, such as 3000".to_owned())
+    let speed = text.trim().parse();
+    let speed = speed.map_err(|_| "expected a number greater than 0, such as 3000".to_owned())?;
+    let checked = SpeedUnit::RevolutionsPerMinute.checked(speed);
+    checked.map_err(|error| error.message)
 }
 
 impl Args {

@@ -298,7 +298,7 @@ fn system_files(page: &mut String) {
          `[axes]`, or one number in `[fixed]`. Values are evenly spaced in the speed; the axis of \
          the map is `tau`, increasing. `slipmap point` takes `--rpm` with `--units`, and `slipmap \
          export` has a column of the speed behind `tau`. `--at rpm=3000` holds the axis of a map \
-         at the delay of that speed.",
+         at the nearest of its speeds.",
     );
     heading(page, 2, "Limits");
     paragraph(

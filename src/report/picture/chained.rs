@@ -83,6 +83,27 @@ impl Left {
 mod tests {
     use super::*;
 
+    /// Ends that are nearly the same are found in whichever squares they lie, and no others.
+    #[test]
+    fn ends_are_the_same_within_a_distance() {
+        for (x, y) in [(0.0, 0.0), (1.0, -1.0), (-3.02, 7.049), (0.0499, 0.0499)] {
+            for (dx, dy) in [
+                (0.04, 0.0),
+                (-0.04, 0.0),
+                (0.0, 0.04),
+                (0.03, 0.03),
+                (-0.03, -0.03),
+            ] {
+                let joined = |far: f64| {
+                    let one = vec![(x - 5.0, y), (x, y)];
+                    let other = vec![(x + far * dx, y + far * dy), (x + 5.0, y + 2.0)];
+                    chained(vec![one, other]).len() == 1
+                };
+                assert!(joined(1.0) && !joined(1.5), "{x} {y} {dx} {dy}");
+            }
+        }
+    }
+
     #[test]
     fn pieces_in_any_order_and_direction_are_one_curve() {
         let square = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)];

@@ -3,13 +3,13 @@
 
 use super::page::Area;
 use super::panels::Panel;
-use super::stable_area::{delay_at, intervals};
+use super::stable_area::{before_end, delay_at, intervals};
 use crate::linear::curves::{CurveKind, CurvePiece, Vertex};
 use crate::meaning::scale::{Scale, ends};
 use crate::report::known::Known;
 use crate::store::map_file::Plane;
 
-/// Relative distance from the end of an axis at which a curve is read there: its end is excluded.
+/// Relative distance within which a curve reaches the lowest q.
 const END: f64 = 1e-9;
 /// The part of a plane of which nothing is known.
 pub(super) const UNKNOWN_PART: i64 = i64::MIN;
@@ -21,11 +21,6 @@ pub(super) trait Division {
 
     /// The value of all places in a part; none where the cells in it tell.
     fn value(&self, part: i64) -> Option<f64>;
-}
-
-/// The value of p at which curves are read: they exclude the end of the axis.
-fn before_end(p: f64, (from, to): (f64, f64)) -> f64 {
-    p.clamp(from, to - END * (to - from))
 }
 
 /// The stable places of a plane, part 1, between its boundaries.
@@ -68,7 +63,7 @@ impl<'a> Sides<'a> {
 
 impl Division for Sides<'_> {
     fn along(&self, p: f64, qs: &[f64]) -> Vec<i64> {
-        let p = before_end(p, self.reach);
+        let p = before_end(p.max(self.reach.0), self.reach);
         let stable = intervals(&self.panel, self.pieces, p, self.without_crossing);
         let holds = |y: f64| stable.iter().any(|&(low, high)| high <= y && y <= low);
         qs.iter()
@@ -120,6 +115,7 @@ impl<'a> Counts<'a> {
     /// How many roots come to the right half-plane as q grows, beside the q where they do,
     /// increasing; none where a curve says nothing about that.
     fn changes(&self, p: f64) -> Option<Vec<(f64, i64)>> {
+        // Cells may be thinned out: curves go on beyond the last of those that are known.
         let p = match p == self.reach.1 {
             true => before_end(p, self.reach),
             false => p,

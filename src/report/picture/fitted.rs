@@ -4,6 +4,7 @@
 use super::divisions::{Division, UNKNOWN_PART};
 use super::panels::Panel;
 use crate::meaning::gap::Gap;
+use crate::meaning::scale::Scale;
 use crate::report::known::Known;
 use crate::store::map_file::Plane;
 
@@ -36,8 +37,8 @@ pub(super) fn fitted(
     if (across, up) == (1, 1) {
         return known;
     }
-    let columns = divided(&panel.x.filling_edges(&plane.columns), across);
-    let rows = divided(&panel.y.filling_edges(&plane.rows), up);
+    let columns = divided(&panel.x, &plane.columns, across);
+    let rows = divided(&panel.y, &plane.rows, up);
     let fine = parts_of((&columns, &rows), (division, turned));
     let grid = Grid {
         panel,
@@ -74,12 +75,14 @@ fn parts_of(
     (0..columns.len()).map(column).collect()
 }
 
-/// The middles of `parts` equal parts of every cell.
-fn divided(edges: &[f64], parts: usize) -> Vec<f64> {
+/// The middles of `parts` parts of every cell, equal on the scale.
+fn divided(scale: &Scale, values: &[f64], parts: usize) -> Vec<f64> {
+    let edges = scale.filling_edges(values);
+    let edges: Vec<f64> = edges.iter().map(|edge| scale.part(*edge)).collect();
     let middle = |i: usize| (i as f64 + 0.5) / parts as f64;
     let cell = |pair: &[f64]| {
         let (from, to) = (pair[0], pair[1]);
-        (0..parts).map(move |i| from + middle(i) * (to - from))
+        (0..parts).map(move |i| scale.value(from + middle(i) * (to - from)))
     };
     edges.windows(2).flat_map(cell).collect()
 }
@@ -141,7 +144,6 @@ mod tests {
     use super::*;
     use crate::linear::Direction;
     use crate::linear::curves::{CurveKind, CurvePiece, StableSide, Vertex};
-    use crate::meaning::scale::Scale;
     use crate::report::picture::divisions::{Counts, Sides, turned};
     use crate::report::picture::page::Area;
 

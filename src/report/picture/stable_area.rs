@@ -2,6 +2,7 @@
 
 use super::panels::Panel;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::meaning::scale::ends;
 use crate::setting::Field;
 use crate::store::map_file::Plane;
 
@@ -27,6 +28,7 @@ pub(super) fn regions(
             panel.area.left + part * panel.area.width(),
             panel.x.value(part),
         );
+        let p = before_end(p, panel.x.ends());
         let intervals = intervals(panel, pieces, p, &without_crossing);
         let before = std::mem::take(&mut open);
         let mut before = before.into_iter().peekable();
@@ -97,8 +99,9 @@ pub(super) fn stable_throughout(
     pieces: &[&CurvePiece],
     p: f64,
 ) -> bool {
+    let reach = ends(&plane.columns);
     let crossed = |at: f64| {
-        let mut pieces = pieces.iter();
+        let (at, mut pieces) = (before_end(at, reach), pieces.iter());
         pieces.any(|piece| delay_at(&piece.vertices, at).is_some())
     };
     let columns = plane.columns.iter().enumerate();
@@ -114,6 +117,16 @@ pub(super) fn stable_throughout(
         .filter(|&&v| field.tells_stable(v) == Some(true))
         .count();
     2 * stable > plane.rows.len()
+}
+
+/// Relative distance from the end of an axis at which a curve is read there.
+const END: f64 = 1e-9;
+
+/// The value at which a curve is read for `p`: itself but at the larger end of its axis, which the
+/// curve excludes.
+pub(super) fn before_end(p: f64, (one, other): (f64, f64)) -> f64 {
+    let (from, to) = (one.min(other), one.max(other));
+    p.min((to - END * (to - from)).min(to.next_down()))
 }
 
 /// The delay of a curve at `p`; none beyond its ends. Between its folds a curve is a function of p.
@@ -191,6 +204,30 @@ mod tests {
         let at = |p| stable_throughout(&plane, Field::NUnstable, &[&curve], p);
         assert!(!at(0.65));
         assert!(stable_throughout(&plane, Field::NUnstable, &[], 0.65));
+    }
+
+    /// A curve that ends with the axis bounds the last slice too, and crosses the last column.
+    #[test]
+    fn curves_that_end_with_the_axis_reach_the_frame() {
+        let lower = piece(StableSide::Longer, (0.0, 0.2), (1.0, 0.2));
+        let upper = piece(StableSide::Shorter, (0.0, 0.6), (1.0, 0.6));
+        for without_crossing in [false, true] {
+            let regions = regions(&panel(), &[&upper, &lower], |_| without_crossing);
+            assert_eq!(regions.len(), 1);
+            let (x, low, high) = regions[0].last().unwrap();
+            assert_eq!(*x, 100.0);
+            assert!(
+                (low - 80.0).abs() < 1e-6 && (high - 40.0).abs() < 1e-6,
+                "{low} {high}"
+            );
+        }
+        let plane = Plane {
+            rows: vec![0.0, 1.0],
+            columns: vec![0.0, 1.0],
+            cells: vec![2.0, 0.0, 2.0, 0.0],
+        };
+        let curve = piece(StableSide::Longer, (0.5, 0.5), (1.0, 0.5));
+        assert!(!stable_throughout(&plane, Field::NUnstable, &[&curve], 0.9));
     }
 
     #[test]

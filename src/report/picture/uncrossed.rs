@@ -19,6 +19,9 @@ use crate::sweep::described::root::Provenance;
 const MOST: usize = 3;
 /// The most values of an axis along which the stability of sliding is all that is computed.
 const MOST_LINEAR: usize = 9;
+/// A sweep of which the first half of the delays is drawn: a critical velocity at its longest delay
+/// and its largest gain takes half a minute.
+const SLOW: &str = "robust_velocity";
 /// Pixels by which parts of one line may seem to overlap, since widths are rounded.
 const ROUNDING: f64 = 1.5;
 
@@ -31,13 +34,12 @@ fn small(path: &Path, folder: &Path) -> Option<MapFile> {
     let mut spec: SweepSpec = has_axes.then(|| text.parse().unwrap())?;
     let linear = spec.fields.iter().all(|field| field.of_sliding());
     let most = if linear { MOST_LINEAR } else { MOST };
-    let of_vc = spec.fields.iter().any(|field| field.of_vc());
+    let slow = path.file_stem().is_some_and(|stem| stem == SLOW);
     let plane = Plan::new(spec.clone()).unwrap().boundary_plane;
     for (i, axis) in spec.axes.iter_mut().enumerate() {
         let outer = plane.is_some_and(|(p, q)| i != p && i != q);
         if !outer && axis.values.len() > most {
-            // At the longest delays and the largest gain one critical velocity takes half a minute.
-            let half = of_vc && axis.parameter == Parameter::Tau;
+            let half = slow && axis.parameter == Parameter::Tau;
             let last = (axis.values.len() - 1) / if half { 2 } else { 1 };
             axis.values = (0..most)
                 .map(|k| axis.values[k * last / (most - 1)])
