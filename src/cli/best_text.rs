@@ -147,9 +147,13 @@ fn print_system(
     for (own, value) in told.setting.own().filter(|(own, _)| own.name != searched) {
         row(&own.name, short(value) + &unit_behind(&own.unit))?;
     }
-    for (name, value) in [("memory", point.memory), ("latency", point.latency)] {
-        if let Some(value) = value.filter(|_| name != searched) {
-            row(name, short(value) + &time)?;
+    for (parameter, value) in [
+        (Parameter::Memory, point.memory),
+        (Parameter::Latency, point.latency),
+    ] {
+        if let Some(value) = value.filter(|_| parameter.name() != searched) {
+            let unit = unit_behind(&units.of_parameter(parameter));
+            row(parameter.name(), short(value) + &unit)?;
         }
     }
     if let Some(margin) = finite(point.stability.delay_margin) {

@@ -302,6 +302,11 @@ fn best_settings_are_told_in_units() {
         in_units["best"],
         json("--tau-from 0.01 --tau-to 0.03")["best"]
     );
+    let late = "best --system letter --search alpha_v --search-from=-1 --search-to=0 --tau-from 1 \
+        --tau-to 6 --set mu_prime=-0.3 --memory 0.3 --latency 0.1 --units SI";
+    let late = told(&folder, &late.split_whitespace().collect::<Vec<_>>());
+    assert!(late.contains("  memory           0.3\n"), "{late}");
+    assert!(late.contains("  latency          0.1 s\n"), "{late}");
     let args = [
         "best",
         "--system",
