@@ -12,8 +12,8 @@ const SAME: f64 = 0.05;
 pub(super) fn chained(pieces: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     let mut left = Left::of(pieces.into_iter().filter(|p| p.len() > 1).collect());
     let mut chains = Vec::new();
-    for piece in (0..left.pieces.len()).rev() {
-        let Some(mut chain) = left.pieces[piece].take() else {
+    for number in (0..left.pieces.len()).rev() {
+        let Some(mut chain) = left.pieces[number].take() else {
             continue;
         };
         // Behind its end first, then before its start.
@@ -40,7 +40,7 @@ fn same(a: Point, b: Point) -> bool {
 
 /// The pieces that are in no chain yet.
 struct Left {
-    /// All pieces; none in the place of one that is taken.
+    /// The pieces by their numbers; none in the place of one that is taken.
     pieces: Vec<Option<Vec<Point>>>,
     /// The numbers of the pieces with an end in a square, decreasing.
     ends: HashMap<(i64, i64), Vec<usize>>,
@@ -62,8 +62,9 @@ impl Left {
     fn taken_at(&mut self, at: Point) -> Option<Vec<Point>> {
         let (column, row) = square(at);
         let beside = |of: i64| (-1..=1).map(move |step| of.saturating_add(step));
-        let around = beside(column).flat_map(|column| beside(row).map(move |row| (column, row)));
-        let mut piece = around.into_iter().find_map(|square| {
+        let mut around =
+            beside(column).flat_map(|column| beside(row).map(move |row| (column, row)));
+        let mut piece = around.find_map(|square| {
             let (here, pieces) = (self.ends.get_mut(&square)?, &mut self.pieces);
             while here.pop_if(|i| pieces[*i].is_none()).is_some() {}
             let is_end = |end: Option<&Point>| end.is_some_and(|end| same(*end, at));

@@ -26,8 +26,6 @@ pub(super) trait Division {
 /// The stable places of a plane, part 1, between its boundaries.
 pub(super) struct Sides<'a> {
     pieces: &'a [&'a CurvePiece],
-    /// The smallest and the largest p.
-    reach: (f64, f64),
     /// A panel on which intervals are measured.
     panel: Panel,
     without_crossing: &'a dyn Fn(f64) -> bool,
@@ -41,7 +39,7 @@ impl<'a> Sides<'a> {
         (ps, qs): (&[f64], &[f64]),
         without_crossing: &'a dyn Fn(f64) -> bool,
     ) -> Self {
-        let (reach, (low, high)) = (ends(ps), ends(qs));
+        let ((from, to), (low, high)) = (ends(ps), ends(qs));
         let area = Area {
             left: 0.0,
             top: 0.0,
@@ -50,10 +48,9 @@ impl<'a> Sides<'a> {
         };
         Self {
             pieces,
-            reach,
             panel: Panel {
                 area,
-                x: Scale::linear(reach.0, reach.1),
+                x: Scale::linear(from, to),
                 y: Scale::linear(low, high),
             },
             without_crossing,
@@ -63,7 +60,7 @@ impl<'a> Sides<'a> {
 
 impl Division for Sides<'_> {
     fn along(&self, p: f64, qs: &[f64]) -> Vec<i64> {
-        let p = before_end(p.max(self.reach.0), self.reach);
+        let p = p.max(self.panel.x.ends().0);
         let stable = intervals(&self.panel, self.pieces, p, self.without_crossing);
         let holds = |y: f64| stable.iter().any(|&(low, high)| high <= y && y <= low);
         qs.iter()

@@ -148,7 +148,7 @@ fn changes_at_boundary(field: Field) -> bool {
 
 /// The cells of a panel, cut along the boundaries of the field: of stability, or of every number of
 /// unstable roots.
-fn cut(
+pub(super) fn cut(
     map: &MapFile,
     (x, y): (usize, usize),
     (index, field): (&[usize], Field),

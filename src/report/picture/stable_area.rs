@@ -28,7 +28,6 @@ pub(super) fn regions(
             panel.area.left + part * panel.area.width(),
             panel.x.value(part),
         );
-        let p = before_end(p, panel.x.ends());
         let intervals = intervals(panel, pieces, p, &without_crossing);
         let before = std::mem::take(&mut open);
         let mut before = before.into_iter().peekable();
@@ -67,6 +66,7 @@ pub(super) fn intervals(
     p: f64,
     without_crossing: impl Fn(f64) -> bool,
 ) -> Vec<(f64, f64)> {
+    let p = before_end(p, panel.x.ends());
     let mut crossings: Vec<(f64, StableSide)> = pieces
         .iter()
         .filter_map(|piece| Some((delay_at(&piece.vertices, p)?, piece.stable_side)))

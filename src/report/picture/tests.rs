@@ -5,8 +5,6 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::divisions::Counts;
-use super::fitted::fitted;
 use super::*;
 use crate::linear::Crossings;
 use crate::linear::certificate::roots_right_of;
@@ -16,6 +14,7 @@ use crate::meaning::colour;
 use crate::meaning::scale::Scale;
 use crate::model::{Groups, elementary};
 use crate::report::known::Known;
+use crate::setting::axis::nearest;
 use crate::setting::{Field, Parameter, SweepSpec};
 use crate::store::map_file::MapCurve;
 use crate::sweep::Plan;
@@ -447,21 +446,19 @@ fn whole_and_cut(case: &Case) -> (Known, Known) {
     };
     let known = || Known::read(&case.map, Field::NUnstable, &view.panels[0], (y, x), 600).unwrap();
     let curves = Curves::of(&case.map, &view).unwrap();
-    let pieces: Vec<_> = curves.list.iter().map(|curve| &curve.piece).collect();
-    let upright = match curves.turned {
-        true => divisions::turned(&known()),
-        false => known(),
-    };
-    let counts = Counts::of(&pieces, &upright);
-    let cut = fitted(&panel, known(), (&counts, curves.turned), 1.0);
+    let all: Vec<_> = curves.list.iter().collect();
+    let shown = (&*view.panels[0], Field::NUnstable);
+    let cut = heat::cut(
+        &case.map,
+        (x, y),
+        shown,
+        &panel,
+        known(),
+        (&all, &curves),
+        1.0,
+    );
+    let cut = cut.unwrap();
     (known(), cut)
-}
-
-/// The index of the value that is nearest.
-fn nearest(values: &[f64], at: f64) -> usize {
-    let far = |i: &usize| (values[*i] - at).abs();
-    let indices = 0..values.len();
-    indices.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()
 }
 
 /// How many places were compared, at how many of them the whole cell has another count than the
@@ -477,7 +474,8 @@ fn wrong_counts(
     for (row, column) in places {
         let (x, y) = (parts.columns[column], parts.rows[row]);
         let Some(count) = counted(x, y) else { continue };
-        let own = nearest(&cells.rows, y) * cells.columns.len() + nearest(&cells.columns, x);
+        let own = nearest(&cells.rows, y).unwrap() * cells.columns.len()
+            + nearest(&cells.columns, x).unwrap();
         all += 1;
         whole_wrong += u32::from(cells.cells[own] != count);
         part_wrong += u32::from(parts.cells[row * parts.columns.len() + column] != count);
@@ -547,7 +545,10 @@ fn wrong_at_ends(sweep: fn(&str, &str) -> String, ranges: [[f64; 2]; 2]) -> u32 
         let fine = fine.plane(Field::NUnstable, &view.panels[0], plane, 600);
         let fine = fine.unwrap();
         let counted = |x: f64, y: f64| {
-            let (row, column) = (nearest(&fine.rows, y), nearest(&fine.columns, x));
+            let (row, column) = (
+                nearest(&fine.rows, y).ok()?,
+                nearest(&fine.columns, x).ok()?,
+            );
             Some(fine.cells[row * fine.columns.len() + column])
         };
         let places = some_rows
