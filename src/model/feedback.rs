@@ -47,6 +47,30 @@ impl Lags {
     }
 }
 
+/// Readings of a digital loop: taken at equal times, and held in between. Times are in the unit of
+/// the delay, elongations in that of a.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Readings {
+    /// h ≥ 0, the time from one reading to the next; 0 for feedback without interruption. Delay
+    /// and latency are multiples of it.
+    pub sample_time: f64,
+    /// The standard deviation of the noise of a reading, 0 or more; white, and drawn once for each
+    /// reading.
+    pub noise: f64,
+    /// The step of the sensor, 0 or more: readings are rounded to its multiples, half away from 0.
+    pub resolution: f64,
+    /// What the noise is drawn with.
+    pub seed: u64,
+}
+
+impl Readings {
+    /// Whether readings are held.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.sample_time > 0.0
+    }
+}
+
 /// Limits of the actuators: v and N stay within them, whatever is commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorLimits {
@@ -122,6 +146,8 @@ pub struct Feedback {
     pub lags: Lags,
     /// Limits of the actuators, in the units of v0 and N0.
     pub limits: ActuatorLimits,
+    /// How the elongation is read; without effect where no gain acts.
+    pub readings: Readings,
 }
 
 impl Feedback {
@@ -148,6 +174,12 @@ impl Feedback {
         self.gains.act() && self.channel.acts()
     }
 
+    /// Whether readings are held, and used.
+    #[must_use]
+    pub fn is_sampled(&self) -> bool {
+        self.gains.act() && self.readings.acts()
+    }
+
     /// How long it remembers: τ/(1 − |R|) + δ, which is one delay without memory and latency, and
     /// where no gain acts.
     #[must_use]
@@ -166,6 +198,7 @@ impl Feedback {
         let unit = oscillator.time_unit();
         let force = oscillator.normal_load();
         let velocity_unit = oscillator.velocity_unit();
+        let length = force / oscillator.stiffness();
         let Lags {
             load,
             velocity,
@@ -189,6 +222,12 @@ impl Feedback {
             limits: ActuatorLimits {
                 velocity: self.limits.velocity.map(|v| v / velocity_unit),
                 load: self.limits.load.map(|n| n / force),
+            },
+            readings: Readings {
+                sample_time: self.readings.sample_time / unit,
+                noise: self.readings.noise / length,
+                resolution: self.readings.resolution / length,
+                seed: self.readings.seed,
             },
         }
     }

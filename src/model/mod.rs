@@ -41,7 +41,7 @@ pub mod stop;
 pub mod table;
 
 pub use error::ModelError;
-pub use feedback::{ActuatorLimits, Channel, Feedback, Lags};
+pub use feedback::{ActuatorLimits, Channel, Feedback, Lags, Readings};
 pub use groups::Groups;
 pub use law::FrictionLaw;
 pub use oscillator::{Control, Dashpots, Oscillator, SlidingPoint};

@@ -8,7 +8,7 @@ use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
 use crate::model::{
-    ActuatorLimits, Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator,
+    ActuatorLimits, Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator, Readings,
 };
 
 impl Setting {
@@ -42,6 +42,12 @@ impl Setting {
             limits: ActuatorLimits {
                 velocity: [v_min, v_max],
                 load: [load_min, load_max],
+            },
+            readings: Readings {
+                sample_time: self.get(Parameter::SampleTime),
+                noise: self.get(Parameter::Noise),
+                resolution: self.get(Parameter::Resolution),
+                seed: 0,
             },
         }
     }

@@ -180,6 +180,14 @@ const DASHPOT: Row = Row {
     ..ROW
 };
 
+/// What a sensor does to a reading.
+const READING: Row = Row {
+    dimension: [0, 1, 0],
+    range: Range::NotNegative,
+    default: Some(0.0),
+    ..ROW
+};
+
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
@@ -460,6 +468,41 @@ catalogue! {
             }),
             page: Some(Page::new([0.0, 2.0], [0.0, 1.0]).folded(Folded::Feedback)),
             ..LAG
+        };
+        /// h, the time from one reading to the next.
+        SampleTime = Row {
+            symbol: "h",
+            name: "sample_time",
+            long_name: "time from one reading of the elongation to the next, held in between",
+            flag: Some(Flag {
+                value: "T",
+                help: "h, time from reading to reading, held in between; 0: no digital loop \
+                    [default: 0]",
+            }),
+            page: Some(Page::new([0.0, 2.0], [0.0, 2.0]).folded(Folded::Feedback)),
+            ..LAG
+        };
+        /// The standard deviation of the noise of a reading.
+        Noise = Row {
+            name: "noise",
+            symbol: "σ_a",
+            long_name: "standard deviation of the noise of a reading of the elongation",
+            flag: Some(Flag {
+                value: "A",
+                help: "Standard deviation of the noise of a reading, in motions [default: 0]",
+            }),
+            ..READING
+        };
+        /// The step of the sensor.
+        Resolution = Row {
+            name: "resolution",
+            symbol: "q_a",
+            long_name: "step to whose multiples readings of the elongation are rounded",
+            flag: Some(Flag {
+                value: "A",
+                help: "Step to whose multiples readings are rounded, in motions [default: 0]",
+            }),
+            ..READING
         };
         /// μ0 of a friction law.
         Mu0 = Row {
@@ -782,9 +825,10 @@ impl Parameter {
         matches!(self.group(), Group::Law)
     }
 
-    /// Memory, latency and lags, which the letter's feedback lacks. At 0, their default, they are
-    /// absent and not mentioned.
-    pub const BEYOND_LETTER: [Self; 5] = [
+    /// Memory, latency, sampling and lags, which the letter's feedback lacks. At 0, their default,
+    /// they are absent and not mentioned.
+    pub const BEYOND_LETTER: [Self; 6] = [
+        Self::SampleTime,
         Self::Memory,
         Self::Latency,
         Self::LoadLag,
@@ -797,6 +841,9 @@ impl Parameter {
 
     /// The limits of the actuators: those of the velocity, then those of the load.
     pub(crate) const LIMITS: [Self; 4] = [Self::VMin, Self::VMax, Self::LoadMin, Self::LoadMax];
+
+    /// What a sensor does to each reading; absent at 0, and known to motions alone.
+    pub(crate) const OF_READINGS: [Self; 2] = [Self::Noise, Self::Resolution];
 
     /// The parameters of the limit of a short delay.
     pub(crate) const OF_LIMIT: [Self; 3] = [Self::Gamma, Self::DampingRatio, Self::MuRatio];
@@ -818,7 +865,13 @@ impl Parameter {
     /// dashpots and limits of actuators.
     #[must_use]
     pub(crate) fn absent_by_default(self) -> bool {
-        let mut absent = [&Self::DASHPOTS[..], &Self::LIMITS, &Self::BEYOND_LETTER].into_iter();
+        let rows: [&[Self]; 4] = [
+            &Self::DASHPOTS,
+            &Self::LIMITS,
+            &Self::BEYOND_LETTER,
+            &Self::OF_READINGS,
+        ];
+        let mut absent = rows.into_iter();
         self == Self::DampingRatio || absent.any(|absent| absent.contains(&self))
     }
 

@@ -178,11 +178,12 @@ impl Setting {
     }
 
     /// The first of these parameters with which the setting goes beyond the letter's own system.
-    /// Without gains, memory and latency have no effect and do not count.
+    /// Without gains, memory, latency and sampling have no effect and do not count.
     #[must_use]
     pub(super) fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
         let idle = !self.control().act();
-        let left_aside = |p: Parameter| idle && matches!(p, Parameter::Memory | Parameter::Latency);
+        let of_the_past = [Parameter::SampleTime, Parameter::Memory, Parameter::Latency];
+        let left_aside = |p: Parameter| idle && of_the_past.contains(&p);
         let mut of = of.iter().copied();
         of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
     }
