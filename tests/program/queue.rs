@@ -24,12 +24,12 @@ const SMALL: &str = "
     mu_prime = -0.3
 ";
 
-/// More than anybody waits for.
+/// More than anybody waits for, on a disk with little room.
 const LARGE: &str = "
-    fields = [\"n_unstable\", \"abscissa\"]
+    fields = [\"n_unstable\", \"abscissa_8\"]
     boundaries = false
     [axes]
-    alpha_n = { from = -3.0, to = 1.0, points = 20000 }
+    alpha_n = { from = -3.0, to = 1.0, points = 3000 }
     tau = { from = 0.05, to = 9.0, points = 10000 }
     [fixed]
     mu_prime = -0.3
@@ -68,7 +68,15 @@ fn expect_jobs(folder: &Folder, expected: &[(&str, &str)]) {
 }
 
 fn work(folder: &Folder) -> std::process::Output {
-    folder.run(&["work", "q", "--until-empty", "--first-pause", "0"])
+    folder.run(&[
+        "work",
+        "q",
+        "--keep-free",
+        "1MB",
+        "--until-empty",
+        "--first-pause",
+        "0",
+    ])
 }
 
 fn failed(folder: &Folder, name: &str) -> String {
@@ -313,7 +321,7 @@ fn a_half_copied_file_is_waited_for() {
     fs::create_dir_all(folder.path().join("q/queue")).unwrap();
     let path = folder.path().join("q/queue/0001-slow.toml");
     fs::write(&path, &SMALL[..60]).unwrap();
-    let worker = folder.start(&["work", "q", "--until-empty"]);
+    let worker = folder.start(&["work", "q", "--keep-free", "1MB", "--until-empty"]);
     for end in [100, 150, SMALL.len()] {
         std::thread::sleep(Duration::from_millis(900));
         fs::write(&path, &SMALL[..end]).unwrap();
@@ -352,7 +360,7 @@ fn a_run_ends_with_its_worker() {
         "waits",
     );
     for signal in ["-KILL", "-TERM", "-INT", "-HUP"] {
-        let mut worker = folder.start(&["work", "q", "--threads", "1"]);
+        let mut worker = folder.start(&["work", "q", "--keep-free", "1MB", "--threads", "1"]);
         let run = the_run_of(worker.id());
         if signal == "-KILL" {
             until_saved(&folder, "100000-large");
@@ -391,7 +399,7 @@ fn a_sweep_is_held_while_it_runs_and_goes_on_later() {
         0,
         "waits",
     );
-    let mut worker = folder.start(&["work", "q", "--threads", "1"]);
+    let mut worker = folder.start(&["work", "q", "--keep-free", "1MB", "--threads", "1"]);
     let run = the_run_of(worker.id());
     until_saved(&folder, "100000-large");
     expect_jobs(
@@ -455,7 +463,15 @@ fn a_line_is_run_after_each_sweep() {
     fs::write(folder.path().join("q/queue/bad.toml"), "x = 1").unwrap();
     let line =
         "echo \"$SLIPMAP_JOB $SLIPMAP_STATE $SLIPMAP_MAP\" >> told; test -n \"$SLIPMAP_WHY\"";
-    let told = folder.run(&["work", "q", "--until-empty", "--then", line]);
+    let told = folder.run(&[
+        "work",
+        "q",
+        "--keep-free",
+        "1MB",
+        "--until-empty",
+        "--then",
+        line,
+    ]);
     expect(
         &told,
         1,
@@ -469,7 +485,7 @@ fn a_line_is_run_after_each_sweep() {
 #[test]
 fn a_sweep_without_room_waits_and_others_go_on() {
     let folder = folder();
-    let huge = LARGE.replace("20000", "2000000");
+    let huge = LARGE.replace("3000", "2000000");
     fs::write(folder.path().join("huge.toml"), huge).unwrap();
     expect(
         &folder.run(&["submit", "huge.toml", "a.toml", "--to", "q"]),
@@ -580,10 +596,18 @@ fn many_are_put_first_at_a_time_and_none_is_lost() {
 #[test]
 fn a_file_that_takes_the_name_of_one_that_runs_is_not_lost() {
     let folder = folder();
-    let middle = LARGE.replace("20000", "40");
+    let middle = LARGE.replace("3000", "40");
     fs::write(folder.path().join("m.toml"), &middle).unwrap();
     expect(&folder.run(&["submit", "m.toml", "--to", "q"]), 0, "waits");
-    let worker = folder.start(&["work", "q", "--threads", "1", "--until-empty"]);
+    let worker = folder.start(&[
+        "work",
+        "q",
+        "--keep-free",
+        "1MB",
+        "--threads",
+        "1",
+        "--until-empty",
+    ]);
     until_saved(&folder, "100000-m");
     fs::write(folder.path().join("q/queue/100000-m.toml"), SMALL).unwrap();
     let ended = worker.ended();
@@ -601,7 +625,7 @@ fn one_job_in_the_way_of_itself_does_not_hold_up_others() {
     fs::write(queue.join(format!("0{}.toml", "x".repeat(240))), SMALL).unwrap();
     fs::write(queue.join("0001-locked.toml"), SMALL).unwrap();
     fs::create_dir(queue.join(".0001-locked.lock")).unwrap();
-    let mut worker = folder.start(&["work", "q"]);
+    let mut worker = folder.start(&["work", "q", "--keep-free", "1MB"]);
     until(60, "the other one is done", || {
         jobs(&folder).contains(&("done".into(), "100000-a".into()))
     });
@@ -620,7 +644,7 @@ fn a_line_that_hangs_is_in_nobodys_way() {
         0,
         "waits",
     );
-    let mut worker = folder.start(&["work", "q", "--then", "sleep 100"]);
+    let mut worker = folder.start(&["work", "q", "--keep-free", "1MB", "--then", "sleep 100"]);
     until(60, "both are done", || {
         folder.path().join("q/100010-b.h5").exists()
     });
@@ -642,10 +666,10 @@ fn a_line_that_hangs_is_in_nobodys_way() {
 #[test]
 fn what_was_computed_is_dropped_only_when_asked_for() {
     let folder = folder();
-    let middle = LARGE.replace("20000", "40");
+    let middle = LARGE.replace("3000", "40");
     fs::write(folder.path().join("m.toml"), &middle).unwrap();
     expect(&folder.run(&["submit", "m.toml", "--to", "q"]), 0, "waits");
-    let mut worker = folder.start(&["work", "q", "--threads", "1"]);
+    let mut worker = folder.start(&["work", "q", "--keep-free", "1MB", "--threads", "1"]);
     until_saved(&folder, "100000-m");
     worker.signal("-KILL");
     worker.wait();
