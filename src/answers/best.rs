@@ -150,7 +150,8 @@ fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
     let mut without_delay = setting.clone();
     without_delay.set(Parameter::Tau, 0.0);
     let linear = without_delay.linear().ok();
-    let frequencies = linear.map(|(model, _)| model.system().frequencies_without_delay());
+    let system = linear.and_then(|(model, _)| model.system());
+    let frequencies = system.map(|system| system.frequencies_without_delay());
     let slowest = frequencies.into_iter().flatten().min_by(f64::total_cmp);
     let longest = PERIODS * TAU / slowest.unwrap_or(1.0);
     let gain = match searched {
@@ -233,10 +234,19 @@ pub fn best_settings(
     ranges: &Ranges,
     stop: &Stop,
 ) -> Result<BestSettings, NoAnswer> {
+    check_not_sampled(setting)?;
     let scales = Scales::of(setting, searched)?;
     let letter = gain_of(searched).map(|gain| letter(setting, gain));
     let found = scales.best(letter.transpose()?, setting, searched, ranges, stop)?;
     Ok(scales.settings(&found, ranges))
+}
+
+/// Refuses a digital loop: the plane that is searched has every delay.
+fn check_not_sampled(setting: &Setting) -> Result<(), ModelError> {
+    let sample_time = setting.get(Parameter::SampleTime);
+    let name = Parameter::SampleTime.name();
+    let allowed = "0 where best settings are searched";
+    ModelError::check(name, sample_time, allowed, sample_time == 0.0).map(|_| ())
 }
 
 /// The best setting under joint errors of gain, delay and μ′.
@@ -265,6 +275,7 @@ pub fn robust_setting(
     spread: Changes,
     stop: &Stop,
 ) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
+    check_not_sampled(setting)?;
     let searched = parameter_of(gain).into();
     let scales = Scales::of(setting, &searched)?;
     setting.check_of_letter(&[], "")?;
@@ -351,7 +362,7 @@ impl Scales {
             let (setting, scratch) = &mut *moved.borrow_mut();
             set(setting, value, tau);
             let (model, _) = setting.linear_in(scratch).ok()?;
-            Some(model.system())
+            model.system()
         };
         let mut search = self.search(
             General {

@@ -1,29 +1,34 @@
 //! Margins of a setting, in its own units.
 
 use crate::linear::general::{DelayLine, System};
+use crate::linear::line::Linear;
 use crate::linear::margins::{
     self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, MarginSearch, Radius, Reach,
     SlidingLaw,
 };
+use crate::linear::sampled::{SampledLoop, multiple};
 use crate::model::stop::Stop;
 use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator};
 use crate::setting::parameter::Parameter;
 use crate::setting::values::Setting;
 
-/// A setting of the letter's own feedback, or of one with more.
+/// A setting of the letter's own feedback, of one with more, or of a digital loop.
 #[derive(Debug, Clone)]
 #[expect(clippy::large_enum_variant, reason = "made once a cell")]
 enum AnyCase {
     Letter(Case<margins::Setting>),
     Beyond(Case),
+    /// The loop, and its delay in samples.
+    Sampled(SampledLoop, u64),
 }
 
-/// An answer about the case of an [`AnyCase`], whichever it is.
+/// An answer about the case of an [`AnyCase`], whichever it is, or about its digital loop.
 macro_rules! on_case {
-    ($any:expr, $case:ident => $answer:expr) => {
+    ($any:expr, $case:ident => $answer:expr, $sampled:pat => $of_sampled:expr) => {
         match $any {
             AnyCase::Letter($case) => $answer,
             AnyCase::Beyond($case) => $answer,
+            $sampled => $of_sampled,
         }
     };
 }
@@ -73,6 +78,18 @@ impl SettingMargins {
             tau: setting.feedback().dimensionless(&oscillator).tau,
             decay: decay * oscillator.time_unit(),
         };
+        let law = setting
+            .friction_law()?
+            .map(|law| (law, setting.get(Parameter::V0)));
+        if let Linear::Sampled(of) = setting.linear().map_err(ModelError::from)?.0 {
+            return Ok(Some(Self {
+                case: AnyCase::Sampled(of, samples(setting, decay)?),
+                line: None,
+                oscillator,
+                control,
+                law,
+            }));
+        }
         let beyond = beyond_letter(setting, &oscillator);
         let on_axis = beyond.filter(|_| decay == 0.0);
         Ok(Some(Self {
@@ -88,33 +105,43 @@ impl SettingMargins {
             }),
             oscillator,
             control,
-            law: setting
-                .friction_law()?
-                .map(|law| (law, setting.get(Parameter::V0))),
+            law,
         }))
     }
 
     /// The same, but once `stop` is set margins are told soon, and mean nothing.
     #[must_use]
     pub fn heeding(mut self, stop: &Stop) -> Self {
-        on_case!(&mut self.case, case => case.heed(stop));
+        on_case!(&mut self.case, case => case.heed(stop), AnyCase::Sampled(..) => ());
         self
     }
 
     /// Whether the setting is stable, or decays as required, beyond doubt.
     #[must_use]
     pub fn stable(&self) -> bool {
-        on_case!(&self.case, case => case.stable())
+        on_case!(
+            &self.case,
+            case => case.stable(),
+            AnyCase::Sampled(of, multiple) => of.is_stable(*multiple)
+        )
     }
 
     /// The factors of both gains at which stability, or the required decay, is lost.
     pub fn gain(&self, search: &mut MarginSearch) -> Limits {
-        on_case!(&self.case, case => search.gain(case))
+        on_case!(
+            &self.case,
+            case => search.gain(case),
+            AnyCase::Sampled(of, multiple) => of.gain_margin(*multiple)
+        )
     }
 
     /// The phase margin in radians, the latency margin in units of time.
     pub fn of_loop(&self, search: &mut MarginSearch) -> LoopMargins {
-        let found = on_case!(&self.case, case => search.of_loop(case));
+        let found = on_case!(
+            &self.case,
+            case => search.of_loop(case),
+            AnyCase::Sampled(of, multiple) => of.loop_margins(*multiple)
+        );
         LoopMargins {
             latency: found.latency * self.oscillator.time_unit(),
             ..found
@@ -124,17 +151,26 @@ impl SettingMargins {
     /// Whether feedback has more than the letter's own.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
-        matches!(self.case, AnyCase::Beyond(_))
+        !matches!(self.case, AnyCase::Letter(_))
     }
 
     /// The latency margin alone, in units of time.
     pub fn latency(&self, search: &mut MarginSearch) -> f64 {
-        on_case!(&self.case, case => search.latency(case)) * self.oscillator.time_unit()
+        let latency = on_case!(
+            &self.case,
+            case => search.latency(case),
+            AnyCase::Sampled(of, multiple) => of.loop_margins(*multiple).latency
+        );
+        latency * self.oscillator.time_unit()
     }
 
     /// The phase margin alone.
     pub fn phase(&self, search: &mut MarginSearch) -> f64 {
-        on_case!(&self.case, case => search.phase(case))
+        on_case!(
+            &self.case,
+            case => search.phase(case),
+            AnyCase::Sampled(of, multiple) => of.phase_margin(*multiple)
+        )
     }
 
     /// The delays at which stability is lost.
@@ -142,7 +178,12 @@ impl SettingMargins {
     pub fn delay(&self) -> Limits {
         let unit = self.oscillator.time_unit();
         let Some((system, tau)) = &self.line else {
-            return scaled(on_case!(&self.case, case => margins::delay(case)), unit);
+            let limits = on_case!(
+                &self.case,
+                case => margins::delay(case),
+                AnyCase::Sampled(of, multiple) => of.stable_delays_around(*multiple)
+            );
+            return scaled(limits, unit);
         };
         let line = DelayLine::of(system).in_physical_time(unit);
         line.stable_interval_at(*tau)
@@ -155,13 +196,21 @@ impl SettingMargins {
     /// The limits of the sliding velocity with a friction law, else those of the slope μ′.
     pub fn third(&self, search: &mut MarginSearch) -> (Parameter, Limits) {
         if let Some((law, v0)) = self.sliding() {
-            let limits = on_case!(&self.case, case => margins::velocity(case, &law, v0));
+            let limits = on_case!(
+                &self.case,
+                case => margins::velocity(case, &law, v0),
+                AnyCase::Sampled(..) => Limits::UNDECIDED
+            );
             return (Parameter::V0, limits);
         }
         // √(κM)/N0.
         let damping = self.oscillator.mass() / self.oscillator.time_unit();
         let slope = damping / self.oscillator.normal_load();
-        let Limits { lower, upper } = on_case!(&self.case, case => search.slope(case));
+        let Limits { lower, upper } = on_case!(
+            &self.case,
+            case => search.slope(case),
+            AnyCase::Sampled(..) => Limits::UNDECIDED
+        );
         let still = self.oscillator.dashpot_ratios().sum();
         let limits = Limits {
             lower: lower - still,
@@ -174,7 +223,11 @@ impl SettingMargins {
     #[must_use]
     pub fn reach(&self) -> Reach {
         let unit = self.oscillator.time_unit();
-        let reach = on_case!(&self.case, case => case.reach());
+        let reach = on_case!(
+            &self.case,
+            case => case.reach(),
+            AnyCase::Sampled(of, multiple) => of.reach(*multiple)
+        );
         Reach {
             gain: reach.gain,
             delay: reach.delay * unit,
@@ -192,10 +245,18 @@ impl SettingMargins {
     #[must_use]
     pub fn radius(&self) -> Radius {
         if let Some((law, v0)) = self.sliding() {
-            return on_case!(&self.case, case => margins::radius_with_law(case, &law, v0));
+            return on_case!(
+                &self.case,
+                case => margins::radius_with_law(case, &law, v0),
+                AnyCase::Sampled(..) => Radius::UNKNOWN
+            );
         }
         let still = self.oscillator.dashpot_ratios().sum();
-        on_case!(&self.case, case => margins::radius_within(case, [1.0; 3], still))
+        on_case!(
+            &self.case,
+            case => margins::radius_within(case, [1.0; 3], still),
+            AnyCase::Sampled(..) => Radius::UNKNOWN
+        )
     }
 
     fn sliding(&self) -> Option<(SlidingLaw<'_>, f64)> {
@@ -207,6 +268,24 @@ impl SettingMargins {
         };
         Some((sliding, *v0))
     }
+}
+
+/// The delay of a digital loop in samples.
+fn samples(setting: &Setting, decay: f64) -> Result<u64, ModelError> {
+    let [sample_time, tau] = [Parameter::SampleTime, Parameter::Tau].map(|p| setting.get(p));
+    let name = Parameter::SampleTime.name();
+    ModelError::check(
+        name,
+        sample_time,
+        "0 where a decay rate is required",
+        decay == 0.0,
+    )?;
+    multiple(tau, sample_time).ok_or(ModelError {
+        parameter: Parameter::Tau.name(),
+        value: tau,
+        allowed: "a whole multiple of sample_time",
+        at_speed: None,
+    })
 }
 
 /// What the feedback of a block has beyond the letter's own, dimensionless; none where that is

@@ -334,6 +334,9 @@ impl<A: Asks> ParameterArgs<A> {
         if let Some((message, help)) = setting.excluded_by_limits(left_out, flag) {
             return Err(Failure::bad_input_with_help(message, help));
         }
+        if let Some((message, help)) = setting.not_sampled(flag) {
+            return Err(Failure::bad_input_with_help(message, help));
+        }
         if !searched.contains(&Parameter::Tau) {
             warn_of_idle_delay(setting.has_idle_delay());
         }

@@ -149,10 +149,15 @@ fn print_block(
         let unit = unit_behind(&units.of_parameter(parameter));
         row(parameter.name(), format!("{}{unit}", digits.of(value)))?;
     }
-    match point.stiffness_ratio {
-        Some(ratio) => row(Field::StiffnessRatio.name(), digits.of(ratio)),
-        None => Ok(()),
+    for (field, value) in [
+        (Field::StiffnessRatio, point.stiffness_ratio),
+        (Field::SpectralRadius, point.spectral_radius),
+    ] {
+        if let Some(value) = value {
+            row(field.name(), digits.of(value))?;
+        }
     }
+    Ok(())
 }
 
 /// What is told of a system from a file besides its stability.

@@ -295,6 +295,7 @@ impl Margins {
             v0_margin: last(limits.upper, around.highest_v0().unwrap_or(f64::NAN)),
         };
         let radius = around.radius();
+        self.note("stability_radius", &[radius.proved]);
         self.stability_radius = radius.proved;
         self.stability_box = Some(StabilityBox::of(&radius, third));
     }

@@ -9,6 +9,7 @@ use super::margin_kind::MarginKind;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
+use crate::model::elementary::exp;
 use crate::model::stop::Stop;
 use crate::setting::no_answer::NoAnswer;
 use crate::setting::system::SystemModel;
@@ -44,6 +45,10 @@ pub struct BlockPoint {
     /// laws.
     #[cfg_attr(feature = "serve", schema(required))]
     pub stiffness_ratio: Option<f64>,
+    /// The factor by which a small disturbance changes from one reading to the next; null without a
+    /// sample time, and where no root converged.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub spectral_radius: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]
     pub stability: Stability,
@@ -119,10 +124,18 @@ impl BlockPoint {
             alpha_n: setting.get(Parameter::AlphaN),
             tau,
             stiffness_ratio: setting.stiffness_ratio().and_then(finite),
+            spectral_radius: spectral_radius(setting, stability.spectrum.abscissa),
             margins: margins.unwrap_or_else(|| Margins::of_stability(&stability, tau)),
             stability,
         })
     }
+}
+
+/// e^(abscissa h) of a digital loop.
+fn spectral_radius(setting: &Setting, abscissa: f64) -> Option<f64> {
+    let feedback = setting.feedback();
+    let sampled = feedback.is_sampled();
+    finite(exp(abscissa * feedback.readings.sample_time)).filter(|_| sampled)
 }
 
 impl SystemPoint {

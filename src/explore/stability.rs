@@ -10,7 +10,7 @@ use super::stable_line::{Latencies, ends};
 use crate::linear::Direction;
 use crate::linear::crossing::Crossing;
 use crate::linear::general::reason::Reason;
-use crate::linear::general::{self as linear, RightOf};
+use crate::linear::general::{self as linear, RightOf, System};
 use crate::linear::line::{Linear, Roots};
 use crate::linear::newton::Root;
 use crate::model::stop::Stop;
@@ -138,7 +138,9 @@ impl Stability {
     pub fn of(model: &Linear, (time_unit, tau): (f64, f64), wanted: Wanted, stop: &Stop) -> Self {
         let mut stability = Self::with_roots(&*model.roots(stop), (time_unit, tau), wanted);
         if !stop.is_set() {
-            stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
+            let latencies = |system: &System| Latencies::of(system, (tau / time_unit, time_unit));
+            let found = model.system().as_ref().map(latencies);
+            stability.latencies = found.unwrap_or_default();
         }
         if stability.disputed(time_unit) {
             (stability.marginal, stability.stable) = (true, false);

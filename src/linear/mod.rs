@@ -33,6 +33,7 @@
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
 //! - `roots`: bisection
 //! - `rounded`: numbers with a bound on their rounding error
+//! - [`sampled`]: the block under a digital loop
 //! - `sensitivity`: derivatives of a root with respect to the groups and the delay
 //! - `spectrum`: all roots right of a line, none missed
 //! - `stretch`: the curves between two breakpoints of the parameter
@@ -64,6 +65,7 @@ pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;
 pub mod row;
+pub mod sampled;
 pub(crate) mod sensitivity;
 pub mod spectrum;
 pub mod stable_delays;

@@ -381,6 +381,16 @@ catalogue! {
             comment: Some("-1/abscissa; infinity where the abscissa is not negative"),
             ..ROW
         };
+        /// The largest |z| of a digital loop, from one reading to the next.
+        SpectralRadius = Row {
+            name: "spectral_radius",
+            long_name: "factor by which a small disturbance changes from one reading to the next",
+            short_name: "spectral radius",
+            source: Source::Roots(OfRoots::SpectralRadius),
+            stable: Some(|value| value < 1.0),
+            comment: Some("e^(abscissa h), with the sample time h"),
+            ..ROW
+        };
         /// The derivative of the spectral abscissa with respect to τ.
         DAbscissaDTau = Row {
             name: "d_abscissa_d_tau",

@@ -16,6 +16,7 @@ use super::law_kind::LawKind;
 use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
+use super::sampling::NotSampled;
 use super::units::Units;
 use super::values::Setting;
 use crate::model::ModelError;
@@ -350,8 +351,8 @@ impl GivenParameters {
         setting
     }
 
-    /// Checks that limits of actuators exclude nothing that has one value. What is `optional` does
-    /// not matter.
+    /// Checks that limits of actuators exclude nothing that has one value, and that nothing which
+    /// has one contradicts the sample time. What is `optional` does not matter.
     fn check_limits(&self, optional: &[Parameter]) -> Result<(), SpecError> {
         let value = |p: Parameter| {
             if optional.contains(&p) {
@@ -363,12 +364,20 @@ impl GivenParameters {
                 .next()
                 .map_or(default.unwrap_or(f64::NAN), |(_, value)| *value)
         };
-        match Excluding::find(value, value) {
+        let refused = |parameter: Parameter, message: String, help: String| SpecError {
+            span: self.place(parameter).cloned(),
+            ..SpecError::whole(message).help(help)
+        };
+        if let Some(found) = Excluding::find(value, value) {
+            let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
+            return Err(refused(found.limit, message, help));
+        }
+        match NotSampled::find(value) {
             None => Ok(()),
-            Some(found) => Err(SpecError {
-                span: self.place(found.limit).cloned(),
-                ..SpecError::whole(found.message(Parameter::key)).help(found.help(Parameter::key))
-            }),
+            Some(found) => {
+                let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
+                Err(refused(found.parameter, message, help))
+            }
         }
     }
 

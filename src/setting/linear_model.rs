@@ -7,6 +7,7 @@ use super::values::Setting;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
 use crate::linear::line::Linear;
+use crate::linear::sampled::SampledLoop;
 use crate::model::{
     ActuatorLimits, Channel, Control, Feedback, Groups, Lags, ModelError, Oscillator, Readings,
 };
@@ -145,12 +146,44 @@ impl Setting {
         if let Some(system) = self.system_in(scratch) {
             return Ok((Linear::General(Box::new(system?)), 1.0));
         }
+        if self.feedback().is_sampled() {
+            return self.sampled();
+        }
         let (groups, oscillator) = self.with_groups()?;
         let model = match self.is_of_letter() {
             true => Linear::Letter(groups),
             false => Linear::General(Box::new(self.loop_around(&oscillator)?.system())),
         };
         Ok((model, oscillator.time_unit()))
+    }
+
+    /// The linear model of a digital loop.
+    fn sampled(&self) -> Result<(Linear, f64), NoAnswer> {
+        if self.rate_and_state().is_some() {
+            return Err(ModelError::of_law("one of the velocity alone, with a sample time").into());
+        }
+        if let Some(lag) = Parameter::LAGS.into_iter().find(|lag| self.get(*lag) > 0.0) {
+            let (parameter, value) = (lag.name(), self.get(lag));
+            return Err(NoAnswer::Model(ModelError {
+                parameter,
+                value,
+                allowed: "0 with a sample time",
+                at_speed: None,
+            }));
+        }
+        let (groups, oscillator) = self.with_groups()?;
+        let Feedback {
+            channel, readings, ..
+        } = self.feedback().dimensionless(&oscillator);
+        let found = SampledLoop::new(groups, channel, readings.sample_time);
+        let latency = ModelError {
+            parameter: Parameter::Latency.name(),
+            value: self.get(Parameter::Latency),
+            allowed: "a whole multiple of sample_time",
+            at_speed: None,
+        };
+        let found = found.ok_or(latency)?;
+        Ok((Linear::Sampled(found), oscillator.time_unit()))
     }
 }
 

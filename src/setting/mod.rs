@@ -37,6 +37,7 @@
 //! - `point_file`: a point of parameter space as text
 //! - `quantity`: the quantity of an axis: a parameter of slipmap, or one of a system's own
 //! - `regime_at_v0`: regimes of a working velocity, by name
+//! - `sampling`: what a digital loop asks of the other parameters
 //! - `search`: the search for critical velocities: its protocol, and the share recomputed
 //! - `setting_text`: a setting as tables of a sweep or case file
 //! - `simulation`: how far and how exactly motions are followed; the motion of a setting
@@ -89,6 +90,7 @@ pub mod parameter;
 pub mod point_file;
 pub mod quantity;
 pub mod regime_at_v0;
+mod sampling;
 pub mod search;
 pub mod setting_text;
 pub mod simulation;

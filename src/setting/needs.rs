@@ -8,6 +8,7 @@ use super::field::Field;
 use super::given_error::GivenError;
 use super::law_kind::{LawKind, NO_MOTIONS};
 use super::parameter::Parameter;
+use super::sampling::not_sampled;
 use super::search::LIMIT;
 use super::simulation::NOT_IN_MOTIONS;
 use super::source::{OfLinear, OfMargins, OfRoots, Source};
@@ -88,7 +89,7 @@ const fn need(
 }
 
 /// The needs. Of several unmet ones the first is reported, at the first field that has it.
-const NEEDS: [Need; 18] = [
+const NEEDS: [Need; 21] = [
     need(Stage::Protocol, Field::of_limit, |asked, field| {
         (!asked.limit).then(|| of_limit(field))
     }),
@@ -119,6 +120,32 @@ const NEEDS: [Need; 18] = [
         Stage::Model,
         |field| field == Field::DAbscissaDMuPrime,
         not_by_slope,
+    ),
+    need(
+        Stage::Model,
+        |field| {
+            field.of_margins() || matches!(field.source(), Source::Roots(OfRoots::Derivative(_)))
+        },
+        |asked, field| {
+            asked.is_sampled().then(|| {
+                ReportedAt::Field.refuse(
+                    format!("{} is not known with a sample time", field.name()),
+                    "n_unstable, abscissa, spectral_radius and delay_margin are",
+                )
+            })
+        },
+    ),
+    need(
+        Stage::Model,
+        |field| field == Field::SpectralRadius,
+        |asked, field| {
+            (!asked.is_sampled()).then(|| {
+                ReportedAt::Field.refuse(
+                    format!("{} is of a digital loop", field.name()),
+                    "give sample_time, the time from one reading to the next",
+                )
+            })
+        },
     ),
     need(
         Stage::Model,
@@ -182,6 +209,7 @@ const NEEDS: [Need; 18] = [
         },
     ),
     need(Stage::Values, |_| true, |asked, _| excluding(asked)),
+    need(Stage::Values, |_| true, |asked, _| not_sampled(asked)),
     need(
         Stage::Values,
         |field| matches!(field, Field::TimeAtLimit | Field::ShareAtLimit),
@@ -279,6 +307,11 @@ impl<'a> FieldsAsked<'a> {
             .flat_map(|axis| &axis.values)
             .copied()
             .chain(fixed)
+    }
+
+    /// Whether the feedback of some cells is read from time to time.
+    fn is_sampled(&self) -> bool {
+        self.values(Parameter::SampleTime).any(|h| h > 0.0)
     }
 
     /// Whether a parameter without a default has a value.

@@ -76,6 +76,8 @@ pub enum OfRoots {
     Frequency(usize),
     /// The time in which a disturbance decays by a factor e.
     RelaxationTime,
+    /// The largest |z| = e^(Re λ h) of a digital loop.
+    SpectralRadius,
     /// The derivative of the spectral abscissa with respect to a parameter.
     Derivative(Slope),
     /// Distance from the spectral abscissa to a line on its right that certifiably has no root to
@@ -115,7 +117,10 @@ impl OfRoots {
     pub(super) const fn needed(self) -> usize {
         match self {
             Self::RealPart(rank) | Self::Frequency(rank) => rank + 1,
-            Self::RelaxationTime | Self::Derivative(_) | Self::CertificateMargin => 1,
+            Self::RelaxationTime
+            | Self::SpectralRadius
+            | Self::Derivative(_)
+            | Self::CertificateMargin => 1,
         }
     }
 }

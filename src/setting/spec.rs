@@ -160,6 +160,12 @@ impl SweepSpec {
         most(&self.fixed, &self.axes).is_of_letter()
     }
 
+    /// Whether the feedback of some cells is read from time to time.
+    #[must_use]
+    pub fn is_sampled(&self) -> bool {
+        most(&self.fixed, &self.axes).feedback().is_sampled()
+    }
+
     /// Whether each cell has a sliding state whose linear stability can be computed. A friction law
     /// needs a v0 for that.
     #[must_use]

@@ -56,3 +56,5 @@ mod robust;
 #[cfg(feature = "sweep")]
 mod robust_beyond;
 mod roots;
+#[cfg(feature = "sweep")]
+mod sampled;

@@ -5,6 +5,7 @@ use super::general::GeneralRoots;
 use super::letter::LetterRoots;
 use crate::linear::feedback_loop::FeedbackLoop;
 use crate::linear::general::{RootCounter, System};
+use crate::linear::sampled::{SampledLoop, SampledRoots};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups, Lags};
 
@@ -24,8 +25,10 @@ use crate::model::{Channel, Groups, Lags};
 pub enum Linear {
     /// The letter's own: without memory, latency and lags.
     Letter(Groups),
-    /// Any other.
+    /// Any other that acts at all times.
     General(Box<System>),
+    /// One that is read from time to time.
+    Sampled(SampledLoop),
 }
 
 impl Linear {
@@ -39,12 +42,17 @@ impl Linear {
         Self::General(Box::new(of_loop.system()))
     }
 
-    /// The system; the letter's own in feedback form.
+    /// The system; the letter's own in feedback form, none of a sampled one.
     #[must_use]
-    pub fn system(&self) -> System {
-        let of_groups =
-            |groups| FeedbackLoop::of_letter(groups, Channel::default(), Lags::default());
-        self.by_kind(|groups| of_groups(groups).system(), |system| *system)
+    pub fn system(&self) -> Option<System> {
+        match self {
+            Self::Letter(groups) => {
+                let of = FeedbackLoop::of_letter(*groups, Channel::default(), Lags::default());
+                Some(of.system())
+            }
+            Self::General(system) => Some(**system),
+            Self::Sampled(_) => None,
+        }
     }
 
     /// Its roots, found within a bound of work. Once `stop` is set, answers come soon but are
@@ -61,20 +69,10 @@ impl Linear {
     }
 
     fn roots_by(&self, counter: impl Fn(&System) -> RootCounter) -> Box<dyn Roots> {
-        self.by_kind(
-            |groups| Box::new(LetterRoots::new(groups)) as Box<dyn Roots>,
-            |system| Box::new(GeneralRoots::new(counter(system))),
-        )
-    }
-
-    fn by_kind<T>(
-        &self,
-        letter: impl FnOnce(Groups) -> T,
-        general: impl FnOnce(&System) -> T,
-    ) -> T {
         match self {
-            Self::Letter(groups) => letter(*groups),
-            Self::General(system) => general(system),
+            Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
+            Self::General(system) => Box::new(GeneralRoots::new(counter(system))),
+            Self::Sampled(of) => Box::new(SampledRoots::new(*of)),
         }
     }
 }

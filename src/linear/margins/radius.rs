@@ -45,6 +45,16 @@ pub struct Radius {
     pub tight: bool,
 }
 
+impl Radius {
+    /// A radius that is not known.
+    pub(crate) const UNKNOWN: Self = Self {
+        proved: f64::NAN,
+        unstable: None,
+        fixed: [false; 3],
+        tight: false,
+    };
+}
+
 /// The largest radius that is looked for.
 const LARGEST: f64 = 1.0;
 /// A side of a box matters by its own width up to so many times what D's zeros move along it.

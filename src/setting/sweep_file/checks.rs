@@ -27,6 +27,7 @@ impl SweepFile<'_> {
             .check(optional.as_slice(), self.document.key("axes"))?;
         self.check_degrees()?;
         self.check_best()?;
+        self.check_sampled()?;
         self.check_law(fixed)?;
         self.check_needs(fixed, Stage::Model)?;
         self.check_nonlinear(fixed)
@@ -96,6 +97,28 @@ impl SweepFile<'_> {
                 ))
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Checks that nothing is asked of a digital loop that needs every delay.
+    fn check_sampled(&self) -> Result<(), SpecError> {
+        let asked = [
+            ("boundaries", self.spec.boundaries == Some(true)),
+            (
+                "degree_of_stability",
+                !self.spec.degrees_of_stability.is_empty(),
+            ),
+            ("best", self.spec.best),
+        ];
+        let found = asked.into_iter().find(|(_, asked)| *asked);
+        match found.filter(|_| self.spec.is_sampled()) {
+            Some((key, _)) => Err(SpecError {
+                span: self.document.key(key).cloned(),
+                ..SpecError::whole(format!("{key} needs every delay")).help(
+                    "with a sample time there are delays of whole samples alone: leave it out",
+                )
+            }),
+            None => Ok(()),
         }
     }
 

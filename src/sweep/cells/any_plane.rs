@@ -24,7 +24,7 @@ pub(super) fn trace_window(
         setting.vary(of[1], q);
         let (model, unit) = setting.linear().ok()?;
         Some(SystemSetting {
-            system: model.system(),
+            system: model.system()?,
             tau: setting.get(Parameter::Tau),
             unit,
         })

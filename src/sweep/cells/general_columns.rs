@@ -225,7 +225,10 @@ impl GeneralColumns {
                 OfRoots::RealPart(0) => physical,
                 OfRoots::RelaxationTime => relaxation_time(physical),
                 OfRoots::CertificateMargin => beside - abscissa,
-                OfRoots::RealPart(_) | OfRoots::Frequency(_) | OfRoots::Derivative(_) => f64::NAN,
+                OfRoots::RealPart(_)
+                | OfRoots::Frequency(_)
+                | OfRoots::SpectralRadius
+                | OfRoots::Derivative(_) => f64::NAN,
             });
             // The line lies left of the imaginary axis: no root is unstable.
             if self.status[i] & MARGINAL == 0 {

@@ -14,6 +14,7 @@
 //! - `lines`: the linear models of lines, without computing again what does not change
 //! - `margin_columns`: the fields of margins: how far a cell is from the boundary of stability
 //! - `root_columns`: fields from roots: from dimensionless roots to physical values
+//! - `sampled_columns`: the cells of a line of a digital loop: counts, margins in delay, roots
 //! - `second_look`: checks of a cell by methods that did not compute it
 //! - `slip_columns`: fields from motions: every cell's block followed to its outcome
 //! - `vc_columns`: fields of the critical velocity, for every cell, and the sample that is
@@ -33,6 +34,7 @@ mod line;
 mod lines;
 mod margin_columns;
 pub(crate) mod root_columns;
+mod sampled_columns;
 pub mod second_look;
 mod slip_columns;
 mod vc_columns;

@@ -124,6 +124,8 @@ fn value(
         },
         OfRoots::RelaxationTime if !converged => f64::NAN,
         OfRoots::RelaxationTime => relaxation_time(real_part(0)),
+        // Of a digital loop alone.
+        OfRoots::SpectralRadius => f64::NAN,
         OfRoots::Derivative(slope) => slopes[slope as usize],
         OfRoots::CertificateMargin => match cell.roots.first() {
             Some(root) => scaled_margin(cell.margin, root.lambda.re, 1.0 / unit),

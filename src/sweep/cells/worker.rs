@@ -10,9 +10,11 @@ use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
 use super::lines::Lines;
 use super::root_columns::RootColumns;
+use super::sampled_columns::{self, SampledCells};
 use crate::linear::general::System;
 use crate::linear::line::Linear;
 use crate::linear::row::Delays;
+use crate::linear::sampled::SampledLoop;
 use crate::linear::status::OUTSIDE_MODEL;
 use crate::model::Groups;
 use crate::model::stop::Stop;
@@ -132,6 +134,10 @@ impl<'p> Worker<'p> {
                     self.fill_general(&system, time_unit, at, stop);
                     Some(false)
                 }
+                Ok((Linear::Sampled(of), time_unit)) => {
+                    self.fill_sampled(of, time_unit, at, stop);
+                    Some(false)
+                }
                 Err(_) => return self.refuse_line(at),
             };
             self.fill_slowly(&tile.offset, inside, at, of_letter, stop);
@@ -188,18 +194,34 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
+    /// Computes the cells of a line of a digital loop.
+    fn fill_sampled(&mut self, of: SampledLoop, time_unit: f64, at: usize, stop: &Stop) {
+        let cells = SampledCells {
+            of,
+            time_unit,
+            delays: self.delays.values(),
+            tolerance: self.plan.spec.tolerance,
+            places: self.places(at),
+            fields: &self.plan.spec.fields,
+            stop,
+        };
+        sampled_columns::fill(&cells, &mut self.buffers);
+        self.unflagged = false;
+    }
+
     /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
     fn fill_by_delay(&mut self, one: &mut Delays, at: usize, stop: &Stop) {
         for i in 0..self.delays.values().len() {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
             one.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
-            let Ok((linear, time_unit)) = self.lines.model() else {
+            let model = self.lines.model();
+            let Ok((Linear::General(system), time_unit)) = model else {
                 self.refuse(place, 1);
                 continue;
             };
             let line = GeneralLine {
-                system: &linear.system(),
+                system: &system,
                 of_loop: None,
                 time_unit,
                 stiffness_ratio: f64::NAN,

@@ -20,6 +20,8 @@ pub enum NoBoundaries {
     NoPlane,
     /// The sweep says so.
     Unwanted,
+    /// Of a digital loop none are known: it has delays of whole samples alone.
+    Sampled,
     /// They are not asked for in planes without the delay.
     NoDelay,
     /// They are not asked for in so many planes.
@@ -39,6 +41,7 @@ impl fmt::Display for NoBoundaries {
             Self::NoSliding => f.write_str("the sweep is not about sliding at a velocity"),
             Self::NoPlane => f.write_str("fewer than two of its axes matter for linear stability"),
             Self::Unwanted => f.write_str("the sweep has boundaries = false"),
+            Self::Sampled => f.write_str("a digital loop has delays of whole samples alone"),
             Self::NoDelay => write!(f, "between two axes without the delay {ONLY_ASKED}"),
             Self::TooMany { planes, most } => {
                 write!(f, "in {planes} planes, more than {most}, {ONLY_ASKED}")
@@ -64,6 +67,9 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
         return Err(NoBoundaries::NoSliding);
     }
     let (p, q) = plane_of_curves(&spec.axes).ok_or(NoBoundaries::NoPlane)?;
+    if spec.is_sampled() {
+        return Err(NoBoundaries::Sampled);
+    }
     let outer = spec.axes.iter().enumerate();
     let outer = outer.filter(|&(i, _)| i != p && i != q);
     let planes: u64 = outer.map(|(_, axis)| axis.len() as u64).product();

@@ -1,0 +1,387 @@
+//! Digital loops against eigenvalues of their state matrix and against an independent table.
+
+use faer::Mat;
+use num_complex::Complex64;
+
+use crate::chance::{Chance, asked};
+use slipmap::linear::MarginalTolerance;
+use slipmap::linear::general::RightOf;
+use slipmap::linear::line::{Line, Linear, Roots};
+use slipmap::linear::margins::Limits;
+use slipmap::linear::sampled::{SampledLoop, SampledRoots};
+use slipmap::model::stop::Stop;
+use slipmap::model::{Channel, Groups};
+
+/// A loop and its delay in samples.
+#[derive(Debug, Clone, Copy)]
+struct Sampled {
+    groups: Groups,
+    h: f64,
+    m: u64,
+    memory: f64,
+    late: u64,
+}
+
+impl Sampled {
+    fn channel(&self) -> Channel {
+        Channel {
+            memory: self.memory,
+            latency: self.late as f64 * self.h,
+        }
+    }
+
+    fn model(&self) -> SampledLoop {
+        SampledLoop::new(self.groups, self.channel(), self.h).unwrap()
+    }
+
+    /// e^(Gh) of the block with a constant input, by a series over a small part of h and squaring.
+    fn step(&self) -> [[f64; 3]; 3] {
+        let Groups { b, a_v, a_n } = self.groups;
+        let halvings = 20;
+        let part = self.h / f64::from(1 << halvings);
+        let g = [[-b, 1.0, -a_n], [-1.0, 0.0, a_v], [0.0; 3]];
+        let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]| {
+            let mut z = [[0.0; 3]; 3];
+            for i in 0..3 {
+                for j in 0..3 {
+                    z[i][j] = (0..3).map(|k| x[i][k] * y[k][j]).sum();
+                }
+            }
+            z
+        };
+        // What is beyond 1 is squared apart, which keeps its digits.
+        let scaled = g.map(|row| row.map(|c| c * part));
+        let second = product(&scaled, &scaled);
+        let third = product(&second, &scaled);
+        let mut beyond = scaled;
+        for i in 0..3 {
+            for j in 0..3 {
+                beyond[i][j] += second[i][j] / 2.0 + third[i][j] / 6.0;
+            }
+        }
+        for _ in 0..halvings {
+            let square = product(&beyond, &beyond);
+            for i in 0..3 {
+                for j in 0..3 {
+                    beyond[i][j] = 2.0 * beyond[i][j] + square[i][j];
+                }
+            }
+        }
+        for (i, row) in beyond.iter_mut().enumerate() {
+            row[i] += 1.0;
+        }
+        beyond
+    }
+
+    /// The sizes of the eigenvalues of the state: u, a, readings and signals of the past.
+    fn sizes(&self) -> Vec<f64> {
+        let (m, l) = (self.m as usize, self.late as usize);
+        let readings = m + l;
+        let signals = if self.memory == 0.0 { 0 } else { m };
+        let n = 2 + readings + signals;
+        let mut matrix = Mat::<f64>::zeros(n, n);
+        // S_k = y_{k−l} − y_{k−l−m} + R S_{k−m}, with y_{k−j} in place 1 + j.
+        let mut signal = vec![0.0; n];
+        signal[1 + l] += 1.0;
+        signal[1 + l + m] -= 1.0;
+        if signals > 0 {
+            signal[n - 1] += self.memory;
+        }
+        let step = self.step();
+        for i in 0..2 {
+            for j in 0..n {
+                matrix[(i, j)] = step[i][2] * signal[j] + if j < 2 { step[i][j] } else { 0.0 };
+            }
+        }
+        for j in 0..readings {
+            matrix[(2 + j, 1 + j)] = 1.0;
+        }
+        for j in 0..signals {
+            let row = 2 + readings + j;
+            if j == 0 {
+                (0..n).for_each(|k| matrix[(row, k)] = signal[k]);
+            } else {
+                matrix[(row, row - 1)] = 1.0;
+            }
+        }
+        let values = matrix.eigenvalues().unwrap();
+        let mut sizes: Vec<_> = values.iter().map(|z| z.re.hypot(z.im)).collect();
+        sizes.sort_by(|one, other| other.total_cmp(one));
+        sizes
+    }
+
+    fn random(chance: &mut Chance, simple: bool) -> Self {
+        let m = 1 + (chance.unit() * 60.0) as u64;
+        let tau = 0.1 + 9.0 * chance.unit();
+        let gain = |part: f64, most: f64| most * (2.0 * part - 1.0);
+        let [v, n, which] = [chance.unit(), chance.unit(), chance.unit()];
+        Self {
+            groups: Groups::new(
+                gain(chance.unit(), 1.2),
+                if which < 0.7 { gain(v, 1.5) } else { 0.0 },
+                if which > 0.3 { gain(n, 4.0) } else { 0.0 },
+            ),
+            h: tau / m as f64,
+            m,
+            memory: if simple {
+                0.0
+            } else {
+                gain(chance.unit(), 0.9)
+            },
+            late: if simple {
+                0
+            } else {
+                (chance.unit() * 9.0) as u64
+            },
+        }
+    }
+
+    /// What is wrong with the counts and the largest root of this loop; nothing where eigenvalues
+    /// lie too near to the circle to tell.
+    fn wrong(&self) -> Option<String> {
+        let sizes = self.sizes();
+        let model = self.model();
+        let expected = sizes.iter().filter(|size| **size > 1.0).count() as u64;
+        let apart = sizes.iter().map(|size| (size - 1.0).abs());
+        if apart.fold(f64::INFINITY, f64::min) < 1e-9 {
+            return None;
+        }
+        let tau = self.m as f64 * self.h;
+        let line = model.line(1.0).count(tau, MarginalTolerance::default());
+        let line = line.map(|count| count.n_unstable);
+        let found = model.n_unstable(self.m);
+        if (found, line) != (expected, Some(expected)) {
+            return Some(format!("{self:?}: {found}, {line:?} for {expected}"));
+        }
+        let spectrum = SampledRoots::new(model).spectrum(tau, 3);
+        let radius = (spectrum.abscissa * self.h).exp();
+        // Multiple eigenvalues are known to the root of their rounding.
+        let near = 1e-6 * (sizes[0] - sizes[2]).clamp(1e-3, 1.0);
+        if !((radius - sizes[0]).abs() <= near) {
+            return Some(format!("{self:?}: radius {radius} for {}", sizes[0]));
+        }
+        if sizes.len() > 3 && sizes[2] - sizes[3] > 1e-6 {
+            let between = 0.5 * (sizes[2] + sizes[3]);
+            let right = SampledRoots::new(model).right_of(tau, between.ln() / self.h);
+            if right != RightOf::Roots(3) {
+                return Some(format!("{self:?}: {right:?} outside {between}"));
+            }
+        }
+        None
+    }
+}
+
+#[test]
+fn counts_and_radii_are_those_of_the_state_matrix() {
+    for (simple, share) in [(true, 1), (false, 2)] {
+        let wrong: Vec<_> = (0..asked("SLIPMAP_SAMPLED", 400) / share)
+            .filter_map(|i| Sampled::random(&mut Chance(1997 + i), simple).wrong())
+            .collect();
+        assert!(
+            wrong.is_empty(),
+            "{}: {:#?}",
+            wrong.len(),
+            &wrong[..wrong.len().min(5)]
+        );
+    }
+}
+
+/// `rig_sampled.csv`: counts equal, and the spectral radius to 1e-9, of which ten digits are given.
+#[test]
+fn the_table_of_digital_loops() {
+    let table = include_str!("../reference/rig_sampled.csv");
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 60);
+    for row in rows {
+        let [
+            mu_prime,
+            damping,
+            viscous,
+            alpha_v,
+            alpha_n,
+            tau,
+            h,
+            radius,
+            unstable,
+        ] = row[..]
+        else {
+            panic!("nine columns")
+        };
+        let b = mu_prime + damping + viscous;
+        let groups = Groups::new(b, alpha_v, alpha_n - damping * alpha_v);
+        let of_loop = SampledLoop::new(groups, Channel::default(), h).unwrap();
+        let m = (tau / h).round() as u64;
+        assert_eq!(of_loop.n_unstable(m) as f64, unstable, "{row:?}");
+        let spectrum = SampledRoots::new(of_loop).spectrum(m as f64 * h, 1);
+        let found = (spectrum.abscissa * h).exp();
+        assert!((found - radius).abs() < 1e-9, "{found} {row:?}");
+        assert!(spectrum.certified, "{row:?}");
+    }
+}
+
+/// To first order a short sample time is a latency of half of it; what is left falls as its square.
+#[test]
+fn a_short_sample_time_is_a_latency_of_half_of_it() {
+    for (groups, tau) in [
+        (Groups::new(-0.3, -0.33, 0.0), 4.15),
+        (Groups::new(-0.5, 0.0, -2.5), 0.6),
+        (Groups::new(0.2, 0.5, 0.3), 2.0),
+    ] {
+        let apart = |m: u64| {
+            let h = tau / m as f64;
+            let of_loop = SampledLoop::new(groups, Channel::default(), h).unwrap();
+            let sampled = SampledRoots::new(of_loop).spectrum(tau, 1).abscissa;
+            let late = Channel {
+                memory: 0.0,
+                latency: 0.5 * h,
+            };
+            let roots = Linear::of_feedback(groups, late).roots(&Stop::default());
+            (sampled - roots.spectrum(tau, 1).abscissa).abs()
+        };
+        let [coarse, middle, fine] = [40, 160, 640].map(apart);
+        for (one, next) in [(coarse, middle), (middle, fine)] {
+            let order = (one / next).log2() / 2.0;
+            assert!((order - 2.0).abs() < 0.1, "{groups:?}: {order}");
+        }
+    }
+}
+
+/// A block without friction starts on the circle: with a latency of h/2 a pair leaves it as the
+/// letter's does at a short delay.
+#[test]
+fn a_block_without_friction_has_its_counts() {
+    for (a_v, a_n, m, h) in [
+        (0.0, -0.4, 3, 0.05),
+        (0.0, 0.4, 3, 0.05),
+        (-0.2, 0.1, 20, 0.2),
+        (0.3, -0.3, 40, 0.1),
+        (-0.2, 0.0, 10, 0.3),
+        (0.2, 0.0, 10, 0.3),
+    ] {
+        let sampled = Sampled {
+            groups: Groups::new(0.0, a_v, a_n),
+            h,
+            m,
+            memory: 0.0,
+            late: 0,
+        };
+        assert_eq!(sampled.wrong(), None);
+    }
+}
+
+/// Stable multiples of the sample time and distances to others are those of single counts.
+#[test]
+fn stable_multiples_are_those_of_counts() {
+    for i in 0..60 {
+        let sampled = Sampled::random(&mut Chance(77 + i), i % 3 != 0);
+        let (model, h) = (sampled.model(), sampled.h);
+        let line = model.line(1.0);
+        let stable: Vec<_> = line.stable_intervals().collect();
+        let counted = |m: u64| model.n_unstable(m) == 0;
+        for m in 1..400 {
+            let tau = m as f64 * h;
+            let inside = stable
+                .iter()
+                .any(|s| s.from < tau + 0.5 * h && tau < s.to + 0.5 * h);
+            assert_eq!(inside, counted(m), "{sampled:?} {m}");
+            let margin = line.margin(tau);
+            assert_eq!(margin > 0.0, inside);
+            let steps = (margin.abs() / h).round();
+            if steps < 200.0 {
+                let steps = steps as u64;
+                let other = |n: u64| n > 0 && counted(n) != inside;
+                let nearer = (1..steps).any(|k| other(m + k) || other(m.saturating_sub(k)));
+                assert!(!nearer, "{sampled:?} {m}");
+                assert!(
+                    other(m + steps) || other(m.saturating_sub(steps)),
+                    "{sampled:?} {m} {margin} {stable:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Gain, phase and latency margins are where single counts change.
+#[test]
+fn margins_are_where_counts_change() {
+    let mut seen = 0;
+    for i in 0..400 {
+        let sampled = Sampled::random(&mut Chance(4000 + i), i % 2 == 0);
+        let (model, m) = (sampled.model(), sampled.m);
+        if !model.is_stable(m) {
+            continue;
+        }
+        seen += 1;
+        let stable = |factor: f64| model.with_gains(factor).n_unstable(m) == 0;
+        let Limits { lower, upper } = model.gain_margin(m);
+        assert!(lower < 1.0 && 1.0 < upper, "{sampled:?} {lower} {upper}");
+        for step in 1..200 {
+            let part = f64::from(step) / 200.0;
+            let above = if upper.is_finite() { upper } else { 50.0 };
+            let factors = [
+                lower + (1.0 - lower) * part,
+                above.powf(part) * (1.0 - 1e-9),
+            ];
+            for factor in factors {
+                assert!(stable(factor), "{sampled:?} {lower} {upper} {factor}");
+            }
+        }
+        assert!(upper.is_infinite() || !stable(upper * (1.0 + 1e-7)));
+        assert!(
+            lower == 0.0 || !stable(lower * (1.0 - 1e-7)),
+            "{sampled:?} {lower}"
+        );
+        let without = Sampled { late: 0, ..sampled };
+        let late = |late: u64| Sampled { late, ..without }.model().n_unstable(m) == 0;
+        let latency = model.latency_margin(m).unwrap_or(40);
+        assert!((0..=latency.min(40)).all(late) || latency == 0);
+        assert!(
+            model
+                .latency_margin(m)
+                .is_none_or(|latency| !late(latency + 1) || latency == 0)
+        );
+    }
+    assert!(seen > 20, "{seen}");
+}
+
+/// |L| is 1 at the phase margin and nowhere nearer to −1: by many frequencies.
+#[test]
+fn phase_margins_are_those_of_the_loop() {
+    for (groups, h, m) in [
+        (Groups::new(-0.3, -0.33, 0.0), 0.0415, 100),
+        (Groups::new(-0.5, 0.0, -2.5), 0.06, 10),
+        (Groups::new(0.2, 0.5, 0.3), 0.1, 20),
+    ] {
+        let of_loop = SampledLoop::new(groups, Channel::default(), h).unwrap();
+        let found = of_loop.phase_margin(m);
+        // −L from the step of the block, by frequencies so dense that none is missed.
+        let sampled = Sampled {
+            groups,
+            h,
+            m,
+            memory: 0.0,
+            late: 0,
+        };
+        let step = sampled.step();
+        let minus_loop = |angle: f64| {
+            let z = Complex64::from_polar(1.0, angle);
+            let [a, b] = [z - step[0][0], Complex64::from(-step[0][1])];
+            let [c, d] = [Complex64::from(-step[1][0]), z - step[1][1]];
+            let response = (a * step[1][2] - c * step[0][2]) / (a * d - b * c);
+            response * (1.0 - z.powu(m as u32).inv())
+        };
+        let (mut least, mut before) = (f64::INFINITY, minus_loop(1e-7));
+        for i in 1..2_000_000 {
+            let now = minus_loop(1e-7 + std::f64::consts::PI * f64::from(i) / 2e6);
+            if (now.norm() > 1.0) != (before.norm() > 1.0) {
+                least = least.min(now.arg().abs());
+            }
+            before = now;
+        }
+        assert!((least - found).abs() < 1e-3, "{groups:?}: {found} {least}");
+    }
+}
