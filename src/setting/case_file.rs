@@ -7,6 +7,7 @@
 //! horizon = 1000.0
 //! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
 //! steps = 1000000                 # the most steps
+//! seed = 0                        # what the noise of readings is drawn with
 //!
 //! [friction]                      # as in sweep files
 //! law = "weakening"

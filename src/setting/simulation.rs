@@ -29,7 +29,15 @@ pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::SensorLag,
 ];
 
-/// The keys `horizon`, `tolerance` and `steps`, of a case file or of the table `[simulation]` of a
+/// What asks for a critical velocity has no readings that are held, nor what motions lack.
+pub(crate) const NOT_IN_CRITICAL: &[Parameter] = &[
+    Parameter::SampleTime,
+    Parameter::LoadLag,
+    Parameter::VelocityLag,
+    Parameter::SensorLag,
+];
+
+/// The keys `horizon`, `tolerance`, `steps` and `seed`, of a case file or of the table `[simulation]` of a
 /// sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
@@ -39,6 +47,8 @@ pub struct Simulation {
     pub tolerance: f64,
     /// The most steps.
     pub steps: u64,
+    /// What the noise of readings is drawn with.
+    pub seed: u64,
     /// The share of v0 by which a block is faster than it is pulled at t = 0, if no start is given.
     pub disturbance: f64,
 }
@@ -53,6 +63,7 @@ impl Default for Simulation {
             horizon: None,
             tolerance: Accuracy::default().tolerance,
             steps: STEPS,
+            seed: 0,
             disturbance: 0.0,
         }
     }
@@ -82,6 +93,7 @@ impl Simulation {
             }),
             tolerance: tolerance.unwrap_or(default.tolerance),
             steps: table.take("steps", read_steps).unwrap_or(default.steps),
+            seed: table.take("seed", Entry::whole).unwrap_or(default.seed),
             ..default
         }
     }
@@ -149,10 +161,12 @@ impl Simulation {
             0.0
         };
         let by_default = || begun + HORIZON * oscillator.time_unit();
+        let mut feedback = setting.feedback();
+        feedback.readings.seed = self.seed;
         Ok(Some(Case {
             oscillator,
             law,
-            feedback: setting.feedback(),
+            feedback,
             v0,
             switch_on,
             start,

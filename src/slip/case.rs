@@ -3,10 +3,12 @@
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
+use super::readings::{MOST_READINGS, whole_multiple};
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
 use crate::model::{
-    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint,
+    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, Readings,
+    SlidingPoint,
 };
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
@@ -237,6 +239,7 @@ impl Case {
         ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
         let known = latency.is_finite() && latency >= 0.0;
         ModelError::check("latency", latency, "finite and at least 0", known)?;
+        self.check_readings()?;
         let ActuatorLimits { velocity, load } = self.feedback.limits;
         let n0 = self.oscillator.normal_load();
         for (name, value, [least, most]) in [("v0", self.v0, velocity), ("normal_load", n0, load)] {
@@ -251,6 +254,48 @@ impl Case {
         let tolerance = self.accuracy.tolerance;
         let range = (1e-15..=1e-3).contains(&tolerance);
         ModelError::check("tolerance", tolerance, "between 1e-15 and 1e-3", range)?;
+        Ok(())
+    }
+
+    /// Checks how the elongation is read.
+    pub(crate) fn check_readings(&self) -> Result<(), ModelError> {
+        let Feedback {
+            tau,
+            channel: Channel { latency, .. },
+            readings,
+            ..
+        } = self.feedback;
+        let Readings {
+            sample_time,
+            noise,
+            resolution,
+            ..
+        } = readings;
+        let at_least_0 = "finite and at least 0";
+        for (name, value) in [
+            ("sample_time", sample_time),
+            ("noise", noise),
+            ("resolution", resolution),
+        ] {
+            ModelError::check(name, value, at_least_0, value >= 0.0)?;
+        }
+        if !readings.acts() {
+            for (name, value) in [("noise", noise), ("resolution", resolution)] {
+                let allowed = "0 without sample_time: give sample_time (--sample-time) too";
+                ModelError::check(name, value, allowed, value == 0.0)?;
+            }
+            return Ok(());
+        }
+        if !self.feedback.is_sampled() {
+            return Ok(());
+        }
+        let times = |time: f64| whole_multiple(time, sample_time);
+        let whole = times(tau).is_some_and(|times| (1.0..=MOST_READINGS).contains(&times));
+        let allowed = "a whole multiple of sample_time, at least one and at most a million";
+        ModelError::check("tau", tau, allowed, whole)?;
+        let whole = times(latency).is_some_and(|times| times <= MOST_READINGS);
+        let allowed = "0 or a whole multiple of sample_time, at most a million";
+        ModelError::check("latency", latency, allowed, whole)?;
         Ok(())
     }
 
@@ -279,6 +324,9 @@ impl Case {
     /// # Errors
     /// When v0 is out of range.
     pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+        if self.feedback.is_sampled() {
+            return Ok(None);
+        }
         let unit = self.oscillator.time_unit();
         let sliding = self.sliding()?;
         Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))

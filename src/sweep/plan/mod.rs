@@ -339,6 +339,10 @@ impl Plan {
             if how.disturbance != 0.0 {
                 facts.push(("disturbance", one(how.disturbance)));
             }
+            if how.seed != 0 {
+                let halves = [how.seed >> 32, how.seed & 0xffff_ffff].map(|half| half as f64);
+                facts.push(("seed", halves.to_vec().into()));
+            }
         }
         facts
     }
