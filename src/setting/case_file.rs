@@ -39,6 +39,7 @@ use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::units::Units;
 use super::values::Setting;
 use crate::slip::case::{Case, CaseError};
+use crate::text::Shown;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
@@ -129,6 +130,22 @@ pub(crate) fn is_case_file(text: &str) -> bool {
 }
 
 impl CaseSpec {
+    /// A remark on readings that are rounded to steps larger than the elongation of sliding at v0:
+    /// they tell next to nothing of the motion.
+    #[must_use]
+    pub(crate) fn resolution_remark(&self) -> Option<String> {
+        let case = &self.case;
+        let (step, sliding) = (case.feedback.readings.resolution, case.sliding_elongation());
+        (case.feedback.is_sampled() && step > sliding).then(|| {
+            let unit = self.units.of_parameter(Parameter::Resolution);
+            let [step, sliding] = [step, sliding].map(|a| format!("{}{unit}", Shown(a)));
+            format!(
+                "resolution = {step} is more than the elongation of sliding at v0, {sliding}: \
+                 readings tell next to nothing of the motion"
+            )
+        })
+    }
+
     /// The error of a trace that would be too long, at the key of the text that makes it so.
     #[must_use]
     pub fn too_long(&self, message: String) -> SpecError {

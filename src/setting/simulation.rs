@@ -1,6 +1,7 @@
 //! How far and how exactly motions are followed, and the motion of a setting: common to sweep and
 //! case files.
 
+use std::borrow::Cow;
 use std::ops::{Range, RangeInclusive};
 
 use super::parameter::{LARGEST, Parameter};
@@ -96,6 +97,27 @@ impl Simulation {
             seed: table.take("seed", Entry::whole).unwrap_or(default.seed),
             ..default
         }
+    }
+
+    /// Its keys and their values, for what a map is known by.
+    pub(crate) fn facts(&self) -> impl Iterator<Item = (&str, Cow<'_, [f64]>)> {
+        let numbers = vec![
+            self.horizon.unwrap_or(0.0),
+            self.tolerance,
+            self.steps as f64,
+        ];
+        // Left out where a start is given, and for earlier maps, whose motions began in
+        // equilibrium.
+        let disturbed = (self.disturbance != 0.0).then(|| vec![self.disturbance]);
+        let halves = [self.seed >> 32, self.seed & 0xffff_ffff].map(|half| half as f64);
+        let seeded = (self.seed != 0).then(|| halves.to_vec());
+        let facts = [
+            ("simulation", Some(numbers)),
+            ("disturbance", disturbed),
+            ("seed", seeded),
+        ];
+        let given = facts.into_iter();
+        given.filter_map(|(name, numbers)| Some((name, numbers?.into())))
     }
 
     /// A remark on a start that is not given; none where motions are not disturbed.

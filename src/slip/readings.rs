@@ -14,7 +14,7 @@ use crate::model::elementary::{ln, normals};
 use crate::model::{Channel, Feedback, Readings};
 
 /// The most readings that a delay or a latency may span: 8 MB each.
-pub const MOST_READINGS: f64 = 1e6;
+pub(super) const MOST_READINGS: f64 = 1e6;
 /// How near a time has to be to a multiple of the time from reading to reading, relative.
 pub(super) const WHOLE: f64 = 1e-9;
 /// Memory that has faded to this share of what was fed back is forgotten.
@@ -209,5 +209,163 @@ impl Sampler {
             signals,
             ..*other
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::elementary::power;
+
+    const EXACT: Readings = Readings {
+        sample_time: 0.5,
+        noise: 0.0,
+        resolution: 0.0,
+        seed: 7,
+    };
+
+    #[test]
+    fn readings_are_rounded_half_away_from_zero() {
+        let coarse = Readings {
+            resolution: 0.25,
+            ..EXACT
+        };
+        for (a, read) in [
+            (0.124, 0.0),
+            (0.125, 0.25),
+            (0.3, 0.25),
+            (0.375, 0.5),
+            (-0.124, 0.0),
+            (-0.125, -0.25),
+            (-0.375, -0.5),
+            (-7.0, -7.0),
+        ] {
+            assert_eq!(reading(&coarse, 3, a), read, "{a}");
+        }
+        assert_eq!(reading(&EXACT, 3, 0.123), 0.123);
+    }
+
+    /// Noise comes before rounding: what it lifts over half a step is rounded up.
+    #[test]
+    fn noise_is_read_before_it_is_rounded() {
+        let noisy = Readings {
+            noise: 0.1,
+            resolution: 0.5,
+            ..EXACT
+        };
+        let unrounded = Readings {
+            resolution: 0.0,
+            ..noisy
+        };
+        let mut ways = [0; 2];
+        for number in 0..100 {
+            let expected = match reading(&unrounded, number, 0.25) >= 0.25 {
+                true => 0.5,
+                false => 0.0,
+            };
+            ways[usize::from(expected > 0.0)] += 1;
+            assert_eq!(reading(&noisy, number, 0.25), expected);
+        }
+        assert!(ways[0] > 20 && ways[1] > 20, "{ways:?}");
+    }
+
+    /// White and normal, other for each seed: mean, variance, the fourth power, correlations with
+    /// the next ones and with other seeds.
+    #[test]
+    fn noise_is_white_and_normal() {
+        let draws = 40_000_i64;
+        let n = draws as f64;
+        let of = |seed: u64| -> Vec<f64> {
+            (-draws / 2..draws / 2).map(|k| gaussian(seed, k)).collect()
+        };
+        let noise = of(3);
+        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n;
+        // Four standard errors each.
+        assert!(mean(&mut noise.iter().copied()).abs() < 4.0 / n.sqrt());
+        let square = mean(&mut noise.iter().map(|x| x * x));
+        assert!((square - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "{square}");
+        let fourth = mean(&mut noise.iter().map(|x| power(*x, 4)));
+        assert!((fourth - 3.0).abs() < 4.0 * (96.0 / n).sqrt(), "{fourth}");
+        for lag in 1..6 {
+            let products = noise.iter().zip(&noise[lag..]).map(|(x, y)| x * y);
+            assert!(
+                mean(&mut products.into_iter()).abs() < 4.0 / n.sqrt(),
+                "{lag}"
+            );
+        }
+        for seed in [0, 1, 2, 4, u64::MAX] {
+            let other = of(seed);
+            for lag in 0..3 {
+                let products = noise.iter().zip(&other[lag..]).map(|(x, y)| x * y);
+                assert!(
+                    mean(&mut products.into_iter()).abs() < 4.0 / n.sqrt(),
+                    "{seed}"
+                );
+            }
+        }
+    }
+
+    /// S_k by the sums of the definition, from readings that are all known: with memory and latency
+    /// of any length beside the delay, however long control has been off.
+    #[test]
+    fn signals_are_those_of_the_definition() {
+        let a = |t: f64| (0.7 * t).sin() + 0.1 * t;
+        for (delay, latency, memory) in [
+            (1, 0, 0.0),
+            (3, 0, 0.0),
+            (3, 2, 0.0),
+            (2, 5, 0.6),
+            (5, 2, -0.4),
+            (4, 4, 0.3),
+            (4, 0, 0.8),
+        ] {
+            let channel = Channel {
+                memory,
+                latency: 0.5 * f64::from(latency),
+            };
+            let feedback = Feedback {
+                readings: EXACT,
+                ..Feedback::new(1.0, 0.0, 0.5 * f64::from(delay)).through(channel)
+            };
+            for switch_on in [0.0, 0.2, 7.0, 300.0] {
+                let known = |t: f64| a(t.max(0.0));
+                let read = |k: i32| known(switch_on + 0.5 * f64::from(k));
+                // V is 0 before the start.
+                let v = |k: i32| {
+                    let (mut sum, mut share, mut k) = (0.0, 1.0, k);
+                    while switch_on + 0.5 * f64::from(k) >= 0.0 || k >= -latency {
+                        sum += share * (read(k) - read(k - delay));
+                        share *= memory;
+                        k -= delay;
+                    }
+                    sum
+                };
+                let mut sampler = Sampler::default();
+                for _ in 0..2 {
+                    sampler.restart(&feedback, switch_on, [0.0, 0.0], known);
+                    while sampler.is_due_before_switch_on(switch_on) {
+                        sampler.read(known(sampler.next));
+                    }
+                    for k in 0..40 {
+                        assert_eq!(sampler.next, switch_on + 0.5 * f64::from(k));
+                        let found = sampler.read(known(sampler.next));
+                        let off = (found - v(k - latency)).abs();
+                        assert!(
+                            off < 1e-12,
+                            "{delay} {latency} {memory} {switch_on} {k}: {off}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn multiples_are_whole_but_for_rounding() {
+        assert_eq!(whole_multiple(1.2, 0.1), Some(12.0));
+        assert_eq!(whole_multiple(0.0, 0.1), Some(0.0));
+        assert_eq!(whole_multiple(1.2 + 1e-8, 0.1), None);
+        assert_eq!(whole_multiple(0.04, 0.1), None);
+        assert_eq!(whole_multiple(f64::INFINITY, 0.1), None);
     }
 }
