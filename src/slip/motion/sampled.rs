@@ -5,13 +5,18 @@
 //! dashpot beside the spring its pull as well. What the jump tears off, or lifts off, is told as an
 //! event that ends a step of no length.
 
-use super::{Event, Integrator, LEAST_ORDER, Mode, Motion, Parameters};
+use super::{Event, Integrator, Mode, Motion, Parameters};
 use crate::model::elementary::power;
 use crate::model::{Channel, Feedback};
 use crate::slip::history::SMOOTH;
 use crate::slip::readings::Sampler;
 use crate::slip::step::Control;
 
+/// The lowest order of a step: near sliding it moves next to nothing from one reading to the next.
+const LEAST: usize = 2;
+/// Steps end long before their series do, so terms fall fast: the last one has to be below the
+/// tolerance, and the one before it below so many times the tolerance.
+const BEFORE_LAST: f64 = 10.0;
 /// A step whose last terms are below this share of the tolerance would do with one fewer.
 const SPARE: f64 = 0.1;
 /// How many terms more a step gets whose last ones exceed the tolerance.
@@ -41,7 +46,7 @@ impl Sampled {
         let (feedback, switch_on) = (&parameters.feedback, parameters.switch_on);
         self.sampler
             .restart(feedback, switch_on, [since, 0.0], known);
-        self.order = LEAST_ORDER;
+        self.order = LEAST;
         (self.signal, self.velocity, self.load) = (0.0, parameters.v0, 1.0);
         if self.acts() {
             parameters.feedback.channel = Channel::default();
@@ -232,7 +237,7 @@ impl Motion {
     /// Works out the coefficients of a step in slip between two readings, as many as a step of
     /// length `limit` needs. Returns how long they hold, at most `limit` where they do so long.
     fn expand_held(&mut self, limit: f64) -> f64 {
-        let mut order = self.sampled.order.clamp(LEAST_ORDER, self.order);
+        let mut order = self.sampled.order.clamp(LEAST, self.order);
         loop {
             self.step.order = order;
             self.expand(true);
@@ -250,8 +255,8 @@ impl Motion {
         }
     }
 
-    /// The larger one of the terms before the last one and the last but two, and that of the last
-    /// two, at the end of a step of length `limit`: of u and of a, relative to their sizes.
+    /// What counts of the terms before the last one, and of those up to it, at the end of a step of
+    /// length `limit`: of u and of a, relative to their sizes.
     fn last_terms(&self, limit: f64) -> [f64; 2] {
         let (u, a, order) = (&self.step.u, &self.step.a, self.step.order);
         let [speed, stretch] = self.sizes();
@@ -262,6 +267,6 @@ impl Motion {
             least * limit * term(order - 1),
             least * limit * limit * term(order),
         ];
-        [terms[0].max(terms[1]), terms[1].max(terms[2])]
+        [0, 1].map(|k| (terms[k] / BEFORE_LAST).max(terms[k + 1]))
     }
 }
