@@ -9,7 +9,7 @@ use super::given_error::GivenError;
 use super::law_kind::{LawKind, NO_MOTIONS};
 use super::parameter::Parameter;
 use super::search::LIMIT;
-use super::simulation::{NOT_IN_CRITICAL, NOT_IN_MOTIONS};
+use super::simulation::not_in_motions;
 use super::source::{OfLinear, OfMargins, OfRoots, Source};
 use super::spec::{SweepSpec, most};
 use super::system::SystemModel;
@@ -88,7 +88,7 @@ const fn need(
 }
 
 /// The needs. Of several unmet ones the first is reported, at the first field that has it.
-const NEEDS: [Need; 19] = [
+const NEEDS: [Need; 18] = [
     need(Stage::Protocol, Field::of_limit, |asked, field| {
         (!asked.limit).then(|| of_limit(field))
     }),
@@ -105,15 +105,10 @@ const NEEDS: [Need; 19] = [
     need(Stage::Model, of_motions, |asked, _| {
         no_motions(asked.fixed.law()?)
     }),
-    need(Stage::Model, of_motions, |asked, _| {
-        let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_MOTIONS)?;
-        let message = format!("{} is not known to motions", parameter.name());
+    need(Stage::Model, of_motions, |asked, field| {
+        let most = most(asked.fixed, asked.axes);
+        let (parameter, message) = not_in_motions(&most, field.of_vc())?;
         Some(ReportedAt::Parameter(parameter).refuse(message, LINEAR))
-    }),
-    need(Stage::Model, Field::of_vc, |asked, _| {
-        let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_CRITICAL)?;
-        let message = format!("{} is not known to critical velocities", parameter.name());
-        Some(ReportedAt::Parameter(parameter).refuse(message, OF_MOTIONS))
     }),
     need(
         Stage::Model,
@@ -222,8 +217,6 @@ const NEEDS: [Need; 19] = [
     }),
 ];
 
-/// What knows of held readings.
-const OF_MOTIONS: &str = "fields of motions take it: outcome, basin_share and others";
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 /// The first need of a stage that is not met, with the field.

@@ -38,6 +38,19 @@ pub(crate) const NOT_IN_CRITICAL: &[Parameter] = &[
     Parameter::SensorLag,
 ];
 
+/// The first parameter of a setting that motions do not know, or the search for a critical velocity
+/// where that is asked for, and a message that says so.
+pub(super) fn not_in_motions(setting: &Setting, critical: bool) -> Option<(Parameter, String)> {
+    let known = [NOT_IN_MOTIONS, NOT_IN_CRITICAL][usize::from(critical)];
+    let parameter = setting.beyond_letter(known)?;
+    let what = match parameter {
+        Parameter::SampleTime => "critical velocities",
+        _ => "motions",
+    };
+    let message = format!("{} is not known to {what}", parameter.name());
+    Some((parameter, message))
+}
+
 /// The keys `horizon`, `tolerance`, `steps` and `seed`, of a case file or of the table `[simulation]` of a
 /// sweep file.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,12 +3,11 @@
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
-use super::readings::{MOST_READINGS, whole_multiple};
+use super::readings;
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
 use crate::model::{
-    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, Readings,
-    SlidingPoint,
+    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint,
 };
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
@@ -266,45 +265,11 @@ impl Case {
     }
 
     /// Checks how the elongation is read.
+    ///
+    /// # Errors
+    /// When a value is out of its range, or a delay no whole multiple of the sample time.
     pub(crate) fn check_readings(&self) -> Result<(), ModelError> {
-        let Feedback {
-            tau,
-            channel: Channel { latency, .. },
-            readings,
-            ..
-        } = self.feedback;
-        let Readings {
-            sample_time,
-            noise,
-            resolution,
-            ..
-        } = readings;
-        let at_least_0 = "finite and at least 0";
-        for (name, value) in [
-            ("sample_time", sample_time),
-            ("noise", noise),
-            ("resolution", resolution),
-        ] {
-            ModelError::check(name, value, at_least_0, value >= 0.0)?;
-        }
-        if !readings.acts() {
-            for (name, value) in [("noise", noise), ("resolution", resolution)] {
-                let allowed = "0 without sample_time: give sample_time (--sample-time) too";
-                ModelError::check(name, value, allowed, value == 0.0)?;
-            }
-            return Ok(());
-        }
-        if !self.feedback.is_sampled() {
-            return Ok(());
-        }
-        let times = |time: f64| whole_multiple(time, sample_time);
-        let whole = times(tau).is_some_and(|times| (1.0..=MOST_READINGS).contains(&times));
-        let allowed = "a whole multiple of sample_time, at least one and at most a million";
-        ModelError::check("tau", tau, allowed, whole)?;
-        let whole = times(latency).is_some_and(|times| times <= MOST_READINGS);
-        let allowed = "0 or a whole multiple of sample_time, at most a million";
-        ModelError::check("latency", latency, allowed, whole)?;
-        Ok(())
+        readings::check(&self.feedback)
     }
 
     /// Sliding under the control that acts in the end, in the units of a motion.
@@ -401,6 +366,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Readings;
     use crate::slip::outcome::Outcome;
 
     fn fig3a(mass: f64, stiffness: f64, load: f64) -> Case {

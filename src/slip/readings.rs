@@ -11,25 +11,68 @@
 //! seed and on k alone, so it is the same whenever the reading is used, on every machine.
 
 use crate::model::elementary::{ln, normals};
-use crate::model::{Channel, Feedback, Readings};
+use crate::model::{Channel, Feedback, ModelError, Readings};
 
 /// The most readings that a delay or a latency may span: 8 MB each.
-pub(super) const MOST_READINGS: f64 = 1e6;
+const MOST_READINGS: f64 = 1e6;
 /// How near a time has to be to a multiple of the time from reading to reading, relative.
-pub(super) const WHOLE: f64 = 1e-9;
+const WHOLE: f64 = 1e-9;
 /// Memory that has faded to this share of what was fed back is forgotten.
 const FADED: f64 = 1e-17;
 
 /// How many times `sample_time` goes into `time`, where it does so a whole number of times.
 #[must_use]
-pub(super) fn whole_multiple(time: f64, sample_time: f64) -> Option<f64> {
+fn whole_multiple(time: f64, sample_time: f64) -> Option<f64> {
     let times = (time / sample_time).round();
     ((time - times * sample_time).abs() <= WHOLE * time).then_some(times)
 }
 
+/// Checks the readings of a feedback, and that its delay and latency are whole multiples of the
+/// time between them.
+pub(super) fn check(feedback: &Feedback) -> Result<(), ModelError> {
+    let Feedback {
+        tau,
+        channel: Channel { latency, .. },
+        readings,
+        ..
+    } = *feedback;
+    let Readings {
+        sample_time,
+        noise,
+        resolution,
+        ..
+    } = readings;
+    let at_least_0 = "finite and at least 0";
+    for (name, value) in [
+        ("sample_time", sample_time),
+        ("noise", noise),
+        ("resolution", resolution),
+    ] {
+        ModelError::check(name, value, at_least_0, value >= 0.0)?;
+    }
+    if !readings.acts() {
+        for (name, value) in [("noise", noise), ("resolution", resolution)] {
+            let allowed = "0 without sample_time: give sample_time (--sample-time) too";
+            ModelError::check(name, value, allowed, value == 0.0)?;
+        }
+        return Ok(());
+    }
+    if !feedback.is_sampled() {
+        return Ok(());
+    }
+    let times = |time: f64| whole_multiple(time, sample_time);
+    let whole = times(tau).is_some_and(|times| (1.0..=MOST_READINGS).contains(&times));
+    let allowed = "a whole multiple of sample_time, at least one and at most a million";
+    ModelError::check("tau", tau, allowed, whole)?;
+    let whole = times(latency).is_some_and(|times| times <= MOST_READINGS);
+    let allowed = "0 or a whole multiple of sample_time, at most a million";
+    ModelError::check("latency", latency, allowed, whole)?;
+    Ok(())
+}
+
 /// What the sensor says of the elongation `a` in reading `number`.
 #[must_use]
-pub(super) fn reading(of: &Readings, number: i64, a: f64) -> f64 {
+fn reading(of: &Readings, number: i64, a: f64) -> f64 {
     let noisy = match of.noise > 0.0 {
         true => a + of.noise * gaussian(of.seed, number),
         false => a,

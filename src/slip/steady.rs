@@ -5,8 +5,8 @@
 //!
 //! - *Stick-slip*: the last [`LASTING`] cycles, each from release to release with a stop between,
 //!   show no trend, and cycles have gone on for [`DELAYS`] times as long as the feedback remembers.
-//!   No trend: the means of period, slip and elongation at release over the older half and over the
-//!   newer half differ by no more than [`ERRORS`] standard errors.
+//!   No trend: periods, slips and elongations at release of the newer half are larger than those of
+//!   the older half about as often as smaller, to [`ERRORS`] standard deviations.
 //! - *Oscillation*: the same of the amplitudes in windows of time without a stop.
 //! - *Sliding*: linear theory says that sliding is stable, and the deviation from it has stayed
 //!   within [`settled_within`] for long: that is no more than noise and rounding keep up.
@@ -21,9 +21,9 @@ use crate::model::Channel;
 pub(super) const LASTING: usize = 24;
 /// For how many times as long as the feedback remembers they have to go on.
 pub(super) const DELAYS: f64 = 4.0;
-/// How far two means may differ, in standard errors of their difference.
+/// How many more pairs of values may rise than fall, in standard deviations of that number.
 const ERRORS: f64 = 3.0;
-/// Differences of means below this, relative, are rounding.
+/// Differences below this, relative, are rounding.
 const ROUNDED: f64 = 1e-9;
 /// The largest deviation of settled noise, in standard deviations, and how many times as large a
 /// deviation may be as one that decays as the slowest root does.
@@ -65,27 +65,32 @@ impl<const W: usize> Lasting<W> {
 
     /// The mean of the `i`-th number.
     pub(super) fn mean(&self, i: usize) -> f64 {
-        self.of_part(i, 0..LASTING).0
+        let values = (0..LASTING).map(|cycle| self.at(i, cycle));
+        values.sum::<f64>() / LASTING as f64
     }
 
+    /// The test of Mann and Whitney (1947): of all pairs of an older and a newer value, about as
+    /// many rise as fall.
     fn is_level(&self, i: usize) -> bool {
-        let half = LASTING / 2;
-        let [(older, one), (newer, other)] =
-            [0..half, half..LASTING].map(|part| self.of_part(i, part));
-        let error = ((one + other) / half as f64).sqrt();
-        let rounding = ROUNDED * (1.0 + older.abs() + newer.abs());
-        (older - newer).abs() <= ERRORS * error + rounding
+        const HALF: usize = LASTING / 2;
+        const VARIANCE: usize = HALF * HALF * (2 * HALF + 1) / 3;
+        let mut rises = 0.0;
+        for older in (0..HALF).map(|cycle| self.at(i, cycle)) {
+            for newer in (HALF..LASTING).map(|cycle| self.at(i, cycle)) {
+                let rise = newer - older;
+                let rounding = ROUNDED * (1.0 + older.abs() + newer.abs());
+                rises += match rise.abs() <= rounding {
+                    true => 0.0,
+                    false => rise.signum(),
+                };
+            }
+        }
+        rises * rises <= ERRORS * ERRORS * VARIANCE as f64
     }
 
-    /// Mean and variance of the `i`-th number over a part of the cycles, the oldest first.
-    fn of_part(&self, i: usize, part: std::ops::Range<usize>) -> (f64, f64) {
-        let number = part.len() as f64;
-        let at = |cycle: usize| self.values[(self.count + cycle) % LASTING][i];
-        let mean = part.clone().map(at).sum::<f64>() / number;
-        let squares: f64 = part
-            .map(|cycle| (at(cycle) - mean) * (at(cycle) - mean))
-            .sum();
-        (mean, squares / (number - 1.0))
+    /// The `i`-th number of a cycle, the oldest first.
+    fn at(&self, i: usize, cycle: usize) -> f64 {
+        self.values[(self.count + cycle) % LASTING][i]
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::{Event, Integrator, Mode, Motion, Parameters};
 use crate::model::elementary::power;
+use crate::model::series::spread;
 use crate::model::{Channel, Feedback};
 use crate::slip::history::SMOOTH;
 use crate::slip::readings::Sampler;
@@ -224,7 +225,10 @@ impl Motion {
             r if r > 0.5 => 0.5 * limit,
             _ => radius,
         };
-        let (length, event) = match self.first_event(length) {
+        let u = &self.step.u[..=self.step.order];
+        let goes_on = u[0].abs() > spread(u, length);
+        let first = (!goes_on).then(|| self.first_event(length)).flatten();
+        let (length, event) = match first {
             Some((s, event)) => (s, Some(event)),
             None => (length, None),
         };
