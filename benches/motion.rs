@@ -7,6 +7,9 @@
 //! 0.1, and of event times, against this integrator at its tightest. Medians of rounds; a round is
 //! repeated until it takes some milliseconds.
 //!
+//! Then what motions cost whose feedback is read at equal times and held in between, beside the
+//! same without interruption.
+//!
 //! At the end: what a law costs that is given as a formula, beside the built-in law of the same
 //! form.
 //!
@@ -20,7 +23,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use slipmap::model::{Dashpots, Feedback, FrictionLaw};
+use slipmap::model::{Dashpots, Feedback, FrictionLaw, Readings};
 use slipmap::setting::Setting;
 use slipmap::setting::formula::GivenFormula;
 use slipmap::setting::law_kind::LawKind;
@@ -242,6 +245,45 @@ fn print_table() {
     }
 }
 
+/// What readings cost that are held, so many in a delay, beside feedback without interruption:
+/// rounds in turn.
+fn print_held() {
+    println!("\nheld        in a delay  tolerance  without, µs per unit  held    ratio");
+    for problem in &problems()[1..] {
+        for (in_delay, tolerance) in [(20.0, 1e-12), (20.0, 1e-9), (5.0, 1e-12)] {
+            let mut held = Problem {
+                parameters: problem.parameters.clone(),
+                ..*problem
+            };
+            let feedback = &mut held.parameters.feedback;
+            feedback.readings = Readings {
+                sample_time: feedback.tau / in_delay,
+                ..Readings::default()
+            };
+            let [without, held] = medians([problem, &held].map(|p| || p.time(tolerance)));
+            println!(
+                "{:<11} {in_delay:<11} {tolerance:<9e}  {without:<21.3} {held:<7.3} {:.3}",
+                problem.name,
+                held / without
+            );
+        }
+    }
+}
+
+/// Medians of two times that are taken in turn.
+fn medians(mut times: [impl FnMut() -> f64; 2]) -> [f64; 2] {
+    let mut taken = [const { Vec::new() }; 2];
+    for _ in 0..ROUNDS {
+        for (taken, time) in taken.iter_mut().zip(&mut times) {
+            taken.push(time());
+        }
+    }
+    taken.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times[ROUNDS / 2]
+    })
+}
+
 /// What a formula costs beside the built-in law of the same form, at 1e-9: rounds in turn.
 fn print_formulas() {
     println!("\nformula     built-in, µs per unit  formula  ratio");
@@ -254,15 +296,7 @@ fn print_formulas() {
             };
             Problem { parameters, ..last }
         });
-        let mut times = [const { Vec::new() }; 2];
-        for _ in 0..ROUNDS {
-            times[0].push(built_in.time(1e-9));
-            times[1].push(formula.time(1e-9));
-        }
-        let [built_in, formula] = times.map(|mut times| {
-            times.sort_by(f64::total_cmp);
-            times[ROUNDS / 2]
-        });
+        let [built_in, formula] = medians([&built_in, &formula].map(|p| || p.time(1e-9)));
         println!(
             "{name:<11} {built_in:<22.3} {formula:<8.3} {:.3}",
             formula / built_in
@@ -277,6 +311,7 @@ fn main() {
         print_lines(folder.as_ref());
     } else {
         print_table();
+        print_held();
         print_formulas();
     }
 }

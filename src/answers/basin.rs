@@ -133,16 +133,19 @@ impl BasinProblem {
                 Err(error) => return Err(error),
             },
         };
+        case.check_readings()?;
         let mut sliding = case.sliding()?;
         if !case.feedback.gains.act() {
             sliding.tau = 0.0;
         }
         let count = sliding.count(MarginalTolerance::default());
+        let sampled = case.feedback.is_sampled();
         Ok(Some(Self {
             abscissa: case.stable_abscissa()?,
             case,
             region,
-            unstable: count.n_unstable > 0 && !count.marginal,
+            // The count is one of feedback without interruption.
+            unstable: count.n_unstable > 0 && !count.marginal && !sampled,
             starts: basin.starts,
             first: 0,
         }))
@@ -248,6 +251,14 @@ impl BasinProblem {
         }
     }
 
+    /// What the noise of readings is drawn with from this start.
+    fn seed(&self, place: Place) -> u64 {
+        let each = u64::from(self.starts / SCRAMBLINGS);
+        let scrambling = u64::from(self.first + place.scrambling);
+        let number = scrambling * each + u64::from(place.number);
+        self.case.feedback.readings.seed.wrapping_add(number)
+    }
+
     /// Follows starts one after the other.
     #[must_use]
     pub fn follower(&self) -> Follower<'_> {
@@ -284,6 +295,7 @@ impl Follower<'_> {
     ) -> Outcome {
         let [first, second] = self.asked.start(place);
         let case = &mut self.case;
+        case.feedback.readings.seed = self.asked.seed(place);
         match self.asked.region {
             Region::State { .. } => {
                 let (x_dot0, a0) = (first, second);

@@ -1,21 +1,15 @@
 //! Points of a Sobol sequence, scrambled by Owen's method; the only file that imports sobol_burley.
 
-use std::f64::consts::TAU;
-
-use crate::model::elementary::{cos, ln, sin};
+use crate::model::elementary::normals;
 
 /// A coordinate of a point, in [0, 1); every seed is a scrambling of its own.
 pub(super) fn part(number: u32, dimension: u32, seed: u32) -> f64 {
     f64::from(sobol_burley::sample(number, dimension, seed))
 }
 
-/// Two independent numbers of the standard normal distribution from the first two coordinates, by
-/// the method of Box and Muller.
+/// Two independent numbers of the standard normal distribution from the first two coordinates.
 pub(super) fn normal(number: u32, seed: u32) -> [f64; 2] {
-    let [first, second] = [0, 1].map(|dimension| part(number, dimension, seed));
-    let radius = (-2.0 * ln(1.0 - first)).sqrt();
-    let angle = TAU * second;
-    [radius * cos(angle), radius * sin(angle)]
+    normals([0, 1].map(|dimension| part(number, dimension, seed)))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::model::elementary::pow;
 use crate::model::stop::Stop;
 use crate::setting::regime_at_v0::RegimeAtV0;
 use crate::setting::search::Protocol;
-use crate::setting::simulation::NOT_IN_MOTIONS;
+use crate::setting::simulation::NOT_IN_CRITICAL;
 use crate::setting::values::Setting;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
@@ -53,7 +53,7 @@ impl VcProblem {
     /// When the setting has no friction law, or a value is outside the model's range: a gain needs
     /// a delay τ > 0.
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
-        setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
+        setting.check_of_letter(NOT_IN_CRITICAL, "0 where a critical velocity is looked for")?;
         let oscillator = setting.oscillator()?;
         let units = CaseUnits::of(&oscillator);
         let Some(law) = setting.friction_law()? else {

@@ -81,6 +81,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "T", allow_hyphen_values = true,
           value_parser = amount_of(Parameter::Tau))]
     horizon: Option<Amount>,
+    /// What the noise of readings is drawn with, a whole number; each start has noise of its own
+    /// [default: 0]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
     /// Write all starts with their outcomes, as text
     #[arg(short, long, value_name = "STARTS.csv")]
     output: Option<PathBuf>,
@@ -197,6 +201,7 @@ impl Args {
             }
             simulation.horizon = Some(horizon);
         }
+        simulation.seed = self.seed.unwrap_or(simulation.seed);
         Ok(Question {
             setting,
             units,

@@ -97,6 +97,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.case.is_some() || args.cell.map.is_some() {
         warn_beyond_curve(spec.setting.beyond_curve(&spec.units));
     }
+    if let Some(remark) = spec.resolution_remark() {
+        say::remark(format_args!("warning: {remark}"));
+    }
     if spec.start_assumed {
         say::note(format_args!(
             "no start is given: the block begins with x_dot0 = {}{}, {} % faster than it is \

@@ -30,6 +30,9 @@ struct TimeArgs {
     #[arg(long, value_name = "T", allow_hyphen_values = true,
           value_parser = amount_of(Parameter::Tau))]
     until: Option<Amount>,
+    /// What the noise of readings is drawn with, a whole number [default: 0]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
 }
 
 /// A time of a flag in `units`.
@@ -51,8 +54,12 @@ impl StartArgs {
 
     /// Whether one of the flags is given.
     pub(super) fn any(&self) -> bool {
-        let TimeArgs { switch_on, until } = &self.times;
-        !self.state.is_empty() || switch_on.is_some() || until.is_some()
+        let TimeArgs {
+            switch_on,
+            until,
+            seed,
+        } = &self.times;
+        !self.state.is_empty() || switch_on.is_some() || until.is_some() || seed.is_some()
     }
 
     /// The values of the state at t = 0, in their ranges.
@@ -72,7 +79,11 @@ impl StartArgs {
     /// # Errors
     /// When a value is outside its range.
     pub(super) fn case(&self, setting: &str, units: &Units) -> Result<String, Failure> {
-        let TimeArgs { switch_on, until } = &self.times;
+        let TimeArgs {
+            switch_on,
+            until,
+            seed,
+        } = &self.times;
         let state = self.state(units)?;
         let mut text = String::new();
         if let Some(of) = switch_on {
@@ -80,6 +91,7 @@ impl StartArgs {
             let switch_on = switch_on.unwrap_or_else(|| Ok("false".into()))?;
             text += &format!("switch_on = {switch_on}\n\n");
         }
+        text.extend(seed.map(|seed| format!("seed = {seed}\n\n")));
         let until = until.as_ref().map(|of| time("--until", of, units));
         let trace = until.transpose()?.map(|until| ("until", until));
         text += setting;

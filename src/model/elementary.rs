@@ -73,6 +73,15 @@ pub(crate) fn rough_root(x: f64, order: usize) -> f64 {
     rough_exp2(rough_log2(x) / order as f64)
 }
 
+/// Two independent numbers of the standard normal distribution from two of the uniform one on
+/// [0, 1), by the method of Box and Muller.
+#[must_use]
+pub(crate) fn normals([first, second]: [f64; 2]) -> [f64; 2] {
+    let radius = (-2.0 * ln(1.0 - first)).sqrt();
+    let angle = std::f64::consts::TAU * second;
+    [radius * cos(angle), radius * sin(angle)]
+}
+
 /// |z|, without overflow on the way.
 #[inline]
 #[must_use]

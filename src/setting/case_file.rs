@@ -7,6 +7,7 @@
 //! horizon = 1000.0
 //! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
 //! steps = 1000000                 # the most steps
+//! seed = 0                        # what the noise of readings is drawn with
 //!
 //! [friction]                      # as in sweep files
 //! law = "weakening"
@@ -38,6 +39,7 @@ use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::units::Units;
 use super::values::Setting;
 use crate::slip::case::{Case, CaseError};
+use crate::text::Shown;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
 
@@ -128,6 +130,22 @@ pub(crate) fn is_case_file(text: &str) -> bool {
 }
 
 impl CaseSpec {
+    /// A remark on readings that are rounded to steps larger than the elongation of sliding at v0:
+    /// they tell next to nothing of the motion.
+    #[must_use]
+    pub(crate) fn resolution_remark(&self) -> Option<String> {
+        let case = &self.case;
+        let (step, sliding) = (case.feedback.readings.resolution, case.sliding_elongation());
+        (case.feedback.is_sampled() && step > sliding).then(|| {
+            let unit = self.units.of_parameter(Parameter::Resolution);
+            let [step, sliding] = [step, sliding].map(|a| format!("{}{unit}", Shown(a)));
+            format!(
+                "resolution = {step} is more than the elongation of sliding at v0, {sliding}: \
+                 readings tell next to nothing of the motion"
+            )
+        })
+    }
+
     /// The error of a trace that would be too long, at the key of the text that makes it so.
     #[must_use]
     pub fn too_long(&self, message: String) -> SpecError {

@@ -255,7 +255,7 @@ pub(crate) const CURVE: [Key; 5] = [
 ];
 
 /// The keys of `[simulation]` in a sweep file; in a case file they stand at the top.
-pub(crate) const SIMULATION: [Key; 3] = [
+pub(crate) const SIMULATION: [Key; 4] = [
     key(
         "horizon",
         "a time, from 1e-12 to 1e12",
@@ -273,6 +273,12 @@ pub(crate) const SIMULATION: [Key; 3] = [
         "a whole number from 1 to 1 000 000 000",
         "1 000 000",
         "the most steps of a motion, which is undecided beyond them",
+    ),
+    key(
+        "seed",
+        "a whole number from 0 on",
+        "0",
+        "what the noise of readings is drawn with: another one, other noise",
     ),
 ];
 
@@ -328,7 +334,7 @@ pub(crate) const TOLERANCE: [Key; 1] = [key(
 )];
 
 /// The keys of a case file.
-pub(crate) const CASE: [Key; 10] = [
+pub(crate) const CASE: [Key; 11] = [
     TITLE,
     needed("friction", "a table", "the friction law"),
     FIXED,
@@ -341,6 +347,7 @@ pub(crate) const CASE: [Key; 10] = [
     SIMULATION[0],
     SIMULATION[1],
     SIMULATION[2],
+    SIMULATION[3],
     START,
     key(
         "trace",

@@ -10,7 +10,7 @@ use super::law_kind::{LawKind, NO_MOTIONS};
 use super::parameter::Parameter;
 use super::sampling::not_sampled;
 use super::search::LIMIT;
-use super::simulation::NOT_IN_MOTIONS;
+use super::simulation::not_in_motions;
 use super::source::{OfLinear, OfMargins, OfRoots, Source};
 use super::spec::{SweepSpec, most};
 use super::system::SystemModel;
@@ -106,9 +106,9 @@ const NEEDS: [Need; 21] = [
     need(Stage::Model, of_motions, |asked, _| {
         no_motions(asked.fixed.law()?)
     }),
-    need(Stage::Model, of_motions, |asked, _| {
-        let parameter = most(asked.fixed, asked.axes).beyond_letter(NOT_IN_MOTIONS)?;
-        let message = format!("{} is not known to motions", parameter.name());
+    need(Stage::Model, of_motions, |asked, field| {
+        let most = most(asked.fixed, asked.axes);
+        let (parameter, message) = not_in_motions(&most, field.of_vc())?;
         Some(ReportedAt::Parameter(parameter).refuse(message, LINEAR))
     }),
     need(

@@ -1,6 +1,7 @@
 //! How far and how exactly motions are followed, and the motion of a setting: common to sweep and
 //! case files.
 
+use std::borrow::Cow;
 use std::ops::{Range, RangeInclusive};
 
 use super::parameter::{LARGEST, Parameter};
@@ -29,7 +30,28 @@ pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::SensorLag,
 ];
 
-/// The keys `horizon`, `tolerance` and `steps`, of a case file or of the table `[simulation]` of a
+/// What asks for a critical velocity has no readings that are held, nor what motions lack.
+pub(crate) const NOT_IN_CRITICAL: &[Parameter] = &[
+    Parameter::SampleTime,
+    Parameter::LoadLag,
+    Parameter::VelocityLag,
+    Parameter::SensorLag,
+];
+
+/// The first parameter of a setting that motions do not know, or the search for a critical velocity
+/// where that is asked for, and a message that says so.
+pub(super) fn not_in_motions(setting: &Setting, critical: bool) -> Option<(Parameter, String)> {
+    let known = [NOT_IN_MOTIONS, NOT_IN_CRITICAL][usize::from(critical)];
+    let parameter = setting.beyond_letter(known)?;
+    let what = match parameter {
+        Parameter::SampleTime => "critical velocities",
+        _ => "motions",
+    };
+    let message = format!("{} is not known to {what}", parameter.name());
+    Some((parameter, message))
+}
+
+/// The keys `horizon`, `tolerance`, `steps` and `seed`, of a case file or of the table `[simulation]` of a
 /// sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
@@ -39,6 +61,8 @@ pub struct Simulation {
     pub tolerance: f64,
     /// The most steps.
     pub steps: u64,
+    /// What the noise of readings is drawn with.
+    pub seed: u64,
     /// The share of v0 by which a block is faster than it is pulled at t = 0, if no start is given.
     pub disturbance: f64,
 }
@@ -53,6 +77,7 @@ impl Default for Simulation {
             horizon: None,
             tolerance: Accuracy::default().tolerance,
             steps: STEPS,
+            seed: 0,
             disturbance: 0.0,
         }
     }
@@ -82,8 +107,30 @@ impl Simulation {
             }),
             tolerance: tolerance.unwrap_or(default.tolerance),
             steps: table.take("steps", read_steps).unwrap_or(default.steps),
+            seed: table.take("seed", Entry::whole).unwrap_or(default.seed),
             ..default
         }
+    }
+
+    /// Its keys and their values, for what a map is known by.
+    pub(crate) fn facts(&self) -> impl Iterator<Item = (&str, Cow<'_, [f64]>)> {
+        let numbers = vec![
+            self.horizon.unwrap_or(0.0),
+            self.tolerance,
+            self.steps as f64,
+        ];
+        // Left out where a start is given, and for earlier maps, whose motions began in
+        // equilibrium.
+        let disturbed = (self.disturbance != 0.0).then(|| vec![self.disturbance]);
+        let halves = [self.seed >> 32, self.seed & 0xffff_ffff].map(|half| half as f64);
+        let seeded = (self.seed != 0).then(|| halves.to_vec());
+        let facts = [
+            ("simulation", Some(numbers)),
+            ("disturbance", disturbed),
+            ("seed", seeded),
+        ];
+        let given = facts.into_iter();
+        given.filter_map(|(name, numbers)| Some((name, numbers?.into())))
     }
 
     /// A remark on a start that is not given; none where motions are not disturbed.
@@ -149,10 +196,12 @@ impl Simulation {
             0.0
         };
         let by_default = || begun + HORIZON * oscillator.time_unit();
+        let mut feedback = setting.feedback();
+        feedback.readings.seed = self.seed;
         Ok(Some(Case {
             oscillator,
             law,
-            feedback: setting.feedback(),
+            feedback,
             v0,
             switch_on,
             start,

@@ -3,6 +3,7 @@
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
+use super::readings;
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
 use crate::model::{
@@ -118,6 +119,14 @@ impl Case {
     #[must_use]
     pub fn units(&self) -> CaseUnits {
         CaseUnits::of(&self.oscillator)
+    }
+
+    /// The elongation of sliding at v0 under the load N0.
+    #[must_use]
+    pub(crate) fn sliding_elongation(&self) -> f64 {
+        let friction = self.law.mu_k(self.v0) * self.oscillator.normal_load();
+        let viscous = self.oscillator.dashpots().viscous * self.v0;
+        (friction + viscous) / self.oscillator.stiffness()
     }
 
     /// The block at t = 0.
@@ -237,6 +246,7 @@ impl Case {
         ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
         let known = latency.is_finite() && latency >= 0.0;
         ModelError::check("latency", latency, "finite and at least 0", known)?;
+        self.check_readings()?;
         let ActuatorLimits { velocity, load } = self.feedback.limits;
         let n0 = self.oscillator.normal_load();
         for (name, value, [least, most]) in [("v0", self.v0, velocity), ("normal_load", n0, load)] {
@@ -252,6 +262,14 @@ impl Case {
         let range = (1e-15..=1e-3).contains(&tolerance);
         ModelError::check("tolerance", tolerance, "between 1e-15 and 1e-3", range)?;
         Ok(())
+    }
+
+    /// Checks how the elongation is read.
+    ///
+    /// # Errors
+    /// When a value is out of its range, or a delay no whole multiple of the sample time.
+    pub(crate) fn check_readings(&self) -> Result<(), ModelError> {
+        readings::check(&self.feedback)
     }
 
     /// Sliding under the control that acts in the end, in the units of a motion.
@@ -279,6 +297,9 @@ impl Case {
     /// # Errors
     /// When v0 is out of range.
     pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+        if self.feedback.is_sampled() {
+            return Ok(None);
+        }
         let unit = self.oscillator.time_unit();
         let sliding = self.sliding()?;
         Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))
@@ -345,6 +366,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Readings;
     use crate::slip::outcome::Outcome;
 
     fn fig3a(mass: f64, stiffness: f64, load: f64) -> Case {
@@ -387,6 +409,62 @@ mod tests {
         assert!((scaled.last_release / unit - plain.last_release).abs() < 1e-9);
         assert!((scaled.peak / 3.0 - plain.peak).abs() < 1e-9);
         assert!((plain.last_release - 27.029009396).abs() < 1e-8);
+    }
+
+    /// Fig. 3(a) read so many times in a delay.
+    fn held(times: f64, readings: Readings) -> Case {
+        let mut case = fig3a(2.0, 7.0, 3.0);
+        case.feedback.readings = Readings {
+            sample_time: case.feedback.tau / times,
+            ..readings
+        };
+        case
+    }
+
+    #[test]
+    fn times_have_to_be_whole_multiples_of_the_sample_time() {
+        let exact = Readings::default();
+        assert!(held(12.0, exact).motion().is_ok());
+        for (times, name) in [(12.5, "tau"), (0.9, "tau"), (2e6, "tau")] {
+            let error = held(times, exact).motion().unwrap_err().to_string();
+            let says = error.starts_with(name) && error.contains("whole multiple of sample_time");
+            assert!(says, "{error}");
+        }
+        let mut late = held(12.0, exact);
+        late.feedback.channel.latency = 2.5 * late.feedback.readings.sample_time;
+        let error = late.motion().unwrap_err().to_string();
+        assert!(error.starts_with("latency"), "{error}");
+        late.feedback.channel.latency = 2.0 * late.feedback.readings.sample_time;
+        assert!(late.motion().is_ok());
+        let noise = Readings {
+            noise: 0.1,
+            ..exact
+        };
+        let mut noisy = held(12.0, noise);
+        assert!(noisy.motion().is_ok());
+        noisy.feedback.readings.sample_time = 0.0;
+        let error = noisy.motion().unwrap_err().to_string();
+        assert!(error.contains("--sample-time"), "{error}");
+        noisy.feedback.readings.sample_time = -1.0;
+        let error = noisy.motion().unwrap_err().to_string();
+        assert!(error.starts_with("sample_time"), "{error}");
+    }
+
+    /// Without gains nothing reads, so readings that fit nothing have no effect.
+    #[test]
+    fn without_gains_readings_have_no_effect() {
+        let mut case = held(
+            12.3,
+            Readings {
+                noise: 0.1,
+                ..Readings::default()
+            },
+        );
+        case.feedback.gains = Control::default();
+        let mut plain = case.clone();
+        plain.feedback.readings = Readings::default();
+        let [one, other] = [case, plain].map(|case| case.run(&mut ()).unwrap());
+        assert_eq!((one.outcome, one.decided), (other.outcome, other.decided));
     }
 
     #[test]

@@ -96,10 +96,15 @@ pub(crate) fn restart_after_release(
     accuracy: Accuracy,
     phase: f64,
 ) -> Result<UncontrolledCycle, NoCycle> {
-    let uncontrolled = Parameters {
+    let mut uncontrolled = Parameters {
         switch_on: f64::INFINITY,
         ..parameters.clone()
     };
+    let is_sampled = parameters.feedback.is_sampled();
+    if is_sampled {
+        // The history keeps the whole cycle, from which the readings before the release are taken.
+        uncontrolled.feedback = Feedback::new(0.0, 0.0, f64::MAX);
+    }
     // The block sticks at the limit and is released at once.
     let released = Motion::release_elongation(parameters);
     motion.restart(uncontrolled, accuracy, 0.0, released);
@@ -115,6 +120,10 @@ pub(crate) fn restart_after_release(
     let before = ((known_before(parameters, accuracy) - phase) / cycle.period()).floor();
     if before > MOST_CYCLES {
         return Err(NoCycle::LongDelay);
+    }
+    if is_sampled {
+        motion.sample_cycle(parameters, phase, cycle.period());
+        return Ok(cycle);
     }
     let mut followed = 0.0;
     while followed < before {

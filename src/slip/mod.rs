@@ -11,6 +11,8 @@
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
 //! - `history`: the elongation over the last delays, and its kinks
+//! - `readings`: readings of a digital loop, and the signal made of them
+//! - `steady`: when a motion whose readings are held has come to what it goes on as
 //! - `watch`: follows a motion until its outcome is known
 
 pub mod case;
@@ -21,7 +23,9 @@ mod graze;
 mod history;
 pub mod motion;
 pub mod outcome;
+mod readings;
 pub mod sliding;
 pub mod speeds;
+mod steady;
 pub mod step;
 pub mod watch;

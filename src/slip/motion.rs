@@ -28,6 +28,7 @@
 //! - `collocated`: steps by collocation: how long they are, the rates there
 //! - `events`: zeros of a step's polynomials, told apart from rounding
 //! - `held`: where a signal is beside the values at which actuators reach their limits
+//! - `sampled`: steps between readings of a digital loop
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy
 //! - `stick`: a stuck block whose elongation grows evenly
 //! - `taylor`: steps by Taylor's method
@@ -39,6 +40,7 @@ mod events;
 mod feedback;
 mod held;
 mod parameters;
+mod sampled;
 mod stick;
 mod taylor;
 
@@ -46,6 +48,7 @@ use super::collocation::NODES;
 use crate::model::law::FrictionSeries;
 use held::Held;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
+use sampled::Sampled;
 
 use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
@@ -80,6 +83,8 @@ pub struct Motion {
     history: History,
     /// V, which is fed back one latency later, where the feedback has a latency.
     signal: History,
+    /// Where the feedback is read at equal times: its readings, in the place of both histories.
+    sampled: Sampled,
     mode: Mode,
     /// Time.
     pub t: f64,
@@ -112,20 +117,23 @@ impl Motion {
     /// Begins another motion, as [`Motion::new`] does, without allocating anew.
     pub fn restart(&mut self, parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) {
         let histories = [&mut self.history, &mut self.signal].map(std::mem::take);
+        let sampled = std::mem::take(&mut self.sampled);
         let stop = std::mem::take(&mut self.stop);
-        *self = Self::with_histories(parameters, accuracy, (u, a), histories).heeding(stop);
+        let begun = Self::with_histories(parameters, accuracy, (u, a), (histories, sampled));
+        *self = begun.heeding(stop);
     }
 
     fn with_histories(
         mut parameters: Parameters,
         accuracy: Accuracy,
         (u, a): (f64, f64),
-        [mut history, mut signal]: [History; 2],
+        ([mut history, mut signal], mut sampled): ([History; 2], Sampled),
     ) -> Self {
         if !parameters.feedback.gains.act() {
             // Nothing is fed back, so memory and latency have no effect.
             parameters.feedback.channel = Channel::default();
         }
+        sampled.restart(&mut parameters, 0.0, |_| a);
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         let order = order(accuracy.integrator, tolerance);
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
@@ -141,7 +149,7 @@ impl Motion {
         history.look_ahead(gain, order, tolerance);
         signal.look_ahead(gain, order, tolerance);
         let step = Step {
-            is_late: parameters.feedback.channel.latency > 0.0,
+            is_late: parameters.feedback.channel.latency > 0.0 || sampled.acts(),
             ..Step::NONE
         };
         let mut motion = Self {
@@ -152,6 +160,7 @@ impl Motion {
             friction,
             history,
             signal,
+            sampled,
             mode: Mode::Stick,
             t: 0.0,
             u,
@@ -216,6 +225,9 @@ impl Motion {
             self.even_since = self.t;
         }
         (self.kink, self.signal_kink) = (1, 1);
+        if self.is_sampled() {
+            self.hold_signal();
+        }
     }
 
     /// Changes the delay from now on, to less than twice the present one: the past is known for two
@@ -246,6 +258,7 @@ impl Motion {
         self.parameters.clone_from(&other.parameters);
         self.history.copy_from(&other.history);
         self.signal.copy_from(&other.signal);
+        self.sampled.copy_from(&other.sampled);
         self.friction.copy_place(&other.friction);
         self.mode = other.mode;
         (self.t, self.u, self.a) = (other.t, other.u, other.a);

@@ -6,9 +6,11 @@ use super::motion::{Event, Motion};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Outcome {
     /// It settles to sliding at v0: sliding is linearly stable, the deviation stayed below 10⁻³ v0
-    /// for a whole delay and has decayed since as the abscissa says, for one relaxation time.
+    /// for a whole delay and has decayed since as the abscissa says, for one relaxation time. With
+    /// noise or a resolution of readings: it stayed for long within what these keep up.
     Sliding,
-    /// Stick and slip follow one another periodically.
+    /// Stick and slip follow one another periodically, or with readings that are held for long and
+    /// without a trend.
     StickSlip,
     /// A bounded periodic oscillation without sticking.
     Oscillation,
@@ -83,7 +85,8 @@ pub struct Summary {
     pub time_at_limit: f64,
     /// The share of the time since switch-on for which v or N has been at a limit.
     pub share_at_limit: f64,
-    /// Period of stick-slip; NaN for other outcomes.
+    /// Period of stick-slip, its mean over the last cycles where they do not repeat; NaN for other
+    /// outcomes.
     pub period: f64,
     /// Time stuck in one period.
     pub stick_time: f64,

@@ -1,9 +1,11 @@
-//! Follows a motion until its outcome is known.
+//! Follows a motion until its outcome is known. Where readings are held, what has lasted long counts
+//! as well as what repeats: see `steady`.
 
 use std::f64::consts::TAU;
 
 use super::motion::{Event, Mode, Motion};
 use super::outcome::{Limits, Observer, Outcome, Summary};
+use super::steady::{DELAYS, Lasting, Settled, settled_within};
 use super::step::Step;
 
 /// Follows `motion` until its outcome is known.
@@ -79,6 +81,18 @@ struct Watch {
     fold: usize,
     decay: Decay,
     window: Window,
+    /// Where readings are held.
+    held: Option<Held>,
+}
+
+/// What lasts of a motion whose readings are held.
+struct Held {
+    /// Period, slip and elongation at release of each cycle, and when the first one began.
+    cycles: Lasting<3>,
+    since: f64,
+    /// Amplitudes in windows without a stop.
+    amplitudes: Lasting<1>,
+    settled: Option<Settled>,
 }
 
 /// The decay of small deviations.
@@ -108,7 +122,7 @@ impl Watch {
         let p = motion.parameters();
         let rest = motion.sliding_elongation();
         let tau = if p.switch_on.is_finite() {
-            p.feedback.remembered()
+            motion.feedback().remembered()
         } else {
             0.0
         };
@@ -148,6 +162,12 @@ impl Watch {
                 before: f64::NAN,
                 equal: 0,
             },
+            held: motion.is_sampled().then(|| Held {
+                cycles: Lasting::new(),
+                since: f64::INFINITY,
+                amplitudes: Lasting::new(),
+                settled: settled_within(motion, limits.stable_abscissa),
+            }),
         }
     }
 
@@ -217,6 +237,15 @@ impl Watch {
             self.fold = fold;
             self.outcome = Some(Outcome::StickSlip);
         }
+        let last = self.cycle(0);
+        if let (Some(held), None) = (&mut self.held, self.outcome) {
+            held.since = held.since.min(began);
+            held.cycles.add([last.period, last.slip, last.elongation]);
+            let for_long = motion.t - held.since >= DELAYS * self.tau;
+            if for_long && held.cycles.has_no_trend() {
+                self.outcome = Some(Outcome::StickSlip);
+            }
+        }
     }
 
     /// The cycle `back` before the last one.
@@ -251,6 +280,10 @@ impl Watch {
             self.decay.small_since = f64::INFINITY;
             self.decay.from = f64::INFINITY;
             self.window.equal = 0;
+            if let Some(held) = &mut self.held {
+                held.amplitudes.forget();
+                held.settled.iter_mut().for_each(Settled::forget);
+            }
             return;
         }
         // A large deviation is needed only where it exceeds what was seen before.
@@ -262,6 +295,13 @@ impl Watch {
         let deviation = step.deviation((self.v0, self.rest), known);
         self.see_decay(motion.t, step.length, deviation);
         self.see_amplitude(motion.t, deviation);
+        let settled = self.held.as_mut().and_then(|held| held.settled.as_mut());
+        if let (Some(settled), None) = (settled, self.outcome) {
+            let times = [motion.t - step.length, motion.t];
+            if settled.lasts(times, deviation, SMALL * self.v0) {
+                self.outcome = Some(Outcome::Sliding);
+            }
+        }
     }
 
     fn see_decay(&mut self, now: f64, length: f64, deviation: f64) {
@@ -311,7 +351,12 @@ impl Watch {
             <= 1e-6_f64.min(0.1 * decay) * window.amplitude;
         window.equal = if same { window.equal + 1 } else { 0 };
         let large = window.amplitude > 10.0 * SMALL * self.v0;
-        if window.equal >= EQUAL_WINDOWS && large {
+        let lasts = self.held.as_mut().is_some_and(|held| {
+            held.amplitudes.add([window.amplitude]);
+            let kept_up = held.settled.map_or(0.0, |settled| settled.within);
+            window.amplitude > kept_up && held.amplitudes.has_no_trend()
+        });
+        if (window.equal >= EQUAL_WINDOWS || lasts) && large {
             self.outcome = Some(Outcome::Oscillation);
         }
         window.before = window.amplitude;
@@ -324,6 +369,10 @@ impl Watch {
         if outcome == Outcome::StickSlip {
             let last = (0..self.fold).map(|back| self.cycle(back));
             (period, slip_time) = last.fold((0.0, 0.0), |(p, s), c| (p + c.period, s + c.slip));
+        }
+        let mut slips = self.fold as u32;
+        if let (Some(held), Outcome::StickSlip, 0) = (&self.held, outcome, self.fold) {
+            (period, slip_time, slips) = (held.cycles.mean(0), held.cycles.mean(1), 1);
         }
         Summary {
             outcome,
@@ -340,7 +389,7 @@ impl Watch {
             stick_time: period - slip_time,
             slip_time,
             last_release: Summary::released_after(outcome, self.last_release, self.switch_on),
-            slips: self.fold as u32,
+            slips,
             steps: self.steps,
         }
     }

@@ -16,6 +16,7 @@ mod basins;
 mod critical;
 mod feedback;
 mod forces;
+mod held;
 mod integrator;
 mod letter_vc;
 mod limit;

@@ -47,6 +47,7 @@ fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
     let echo = [
         ("memory", s.memory),
         ("latency", s.latency),
+        ("sample_time", s.sample_time),
         ("damping", s.damping),
         ("viscous", s.viscous),
     ];

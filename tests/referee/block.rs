@@ -7,7 +7,8 @@
 //! point of a table, and where a command passes a limit.
 //!
 //! With memory or latency V(t) = a(t) − a(t−τ) + R V(t−τ) is kept beside a, from one end of a step
-//! to the next; then S = V(t−δ).
+//! to the next; then S = V(t−δ). With readings S is worked out at each of them from the past of
+//! the elongation, and steps end there (`readings`).
 
 use super::echoes::Echoes;
 use super::past::Past;
@@ -84,7 +85,7 @@ const OF_A_TABLE: u32 = 3;
 pub(crate) struct Block {
     pub setting: Setting,
     pace: Pace,
-    past: Past,
+    pub(super) past: Past,
     /// V, where there is memory or latency.
     signal: Past,
     echoes: Echoes,
@@ -99,6 +100,9 @@ pub(crate) struct Block {
     sides: [f64; 4],
     /// The rate of the elongation at the end of the last step.
     arriving: f64,
+    /// S as it is held, where there are readings, and what has been held before.
+    pub(super) held: f64,
+    pub(super) signals: Vec<f64>,
 }
 
 impl Block {
@@ -149,6 +153,8 @@ impl Block {
             stuck_since: 0.0,
             sides: [1.0; 4],
             arriving: 0.0,
+            held: 0.0,
+            signals: Vec::new(),
         };
         block.kink(1);
         block.look_at_limits();
@@ -156,7 +162,7 @@ impl Block {
     }
 
     /// Notes on which sides of their limits the commands are.
-    fn look_at_limits(&mut self) {
+    pub(super) fn look_at_limits(&mut self) {
         let now = self.look(self.t, self.u, self.a);
         self.sides = std::array::from_fn(|i| match self.beyond(i, &now).0 < 0.0 {
             true => -1.0,
@@ -197,6 +203,9 @@ impl Block {
         if !self.controlled && self.t >= self.setting.switch_on {
             self.switch_on();
             return Some(Event::SwitchOn);
+        }
+        if self.controlled && self.t >= self.next_reading() - self.nearly() {
+            self.read();
         }
         self.echoes.pass(self.t, &self.setting, self.controlled);
         let from = self.look(self.t, self.u, self.a);
@@ -307,6 +316,7 @@ impl Block {
         let s = &self.setting;
         match self.controlled {
             false => (0.0, 0.0),
+            true if s.is_sampled() => (self.held, 0.0),
             true if s.latency > 0.0 => self.signal.at(t - s.latency),
             true => self.less_than_a(t),
         }
@@ -325,7 +335,7 @@ impl Block {
 
     /// S from what [`Self::delayed`] says, or its rate from the rate.
     fn fed_back(&self, a: f64, delayed: f64) -> f64 {
-        match self.setting.latency > 0.0 {
+        match self.setting.latency > 0.0 || self.setting.is_sampled() {
             true => delayed,
             false => a - delayed,
         }
@@ -387,8 +397,9 @@ impl Block {
         if self.controlled || !s.is_plain() {
             end = end.min(self.echoes.next());
         }
-        if !self.controlled {
-            end = end.min(s.switch_on);
+        match self.controlled {
+            true => end = end.min(self.next_reading()),
+            false => end = end.min(s.switch_on),
         }
         let room = end - self.t;
         if self.stretches_evenly() {
@@ -411,6 +422,9 @@ impl Block {
             let growth = (now.pull_rate / s.mass).abs();
             h = h.min((0.02 * s.friction.reach(self.piece, now.u) / growth).sqrt());
         }
+        if s.is_sampled() {
+            return part_of(room, h);
+        }
         if self.controlled || !s.is_plain() {
             let then = self.t - s.tau;
             h = h.min(self.pace.delayed(s.tau));
@@ -421,12 +435,7 @@ impl Block {
             h = h.min(self.pace.delayed(s.latency));
             h = h.min(self.signal.end_of_step(then, Pace::seen_at_once()) - then);
         }
-        // No tiny step before an end.
-        if room < h {
-            room
-        } else {
-            h.min(0.5 * room.max(h))
-        }
+        part_of(room, h)
     }
 
     /// The rates at which control alone would move the block.
@@ -445,7 +454,7 @@ impl Block {
         let plain = s.is_plain();
         let long = self.t - self.stuck_since >= s.tau + s.latency;
         let evenly = s.alpha_v == 0.0 && s.memory == 0.0 && long;
-        self.mode == Mode::Stick && ((!self.controlled && plain) || evenly)
+        self.mode == Mode::Stick && ((!self.controlled && plain) || evenly || s.is_sampled())
     }
 
     /// A little more than the time until a guard falls below 0, if all go on as they do.
@@ -480,10 +489,18 @@ impl Block {
         (self.t, self.u, self.a) = (to.t, to.u, to.a);
         self.past.arrive(to.t, to.a, to.a_rate);
         let s = &self.setting;
-        let remembered = 1.5 * s.tau.max(s.latency);
+        self.arriving = to.a_rate;
+        if s.is_sampled() && !self.controlled {
+            // The first reading looks at all that was before.
+            return;
+        }
+        let remembered = 1.5
+            * match s.is_sampled() {
+                true => s.tau + s.latency,
+                false => s.tau.max(s.latency),
+            };
         self.past.forget_before(to.t - remembered);
         self.signal.forget_before(to.t - remembered);
-        self.arriving = to.a_rate;
     }
 
     /// A guard has fallen below 0.
@@ -547,6 +564,16 @@ impl Block {
 
     /// The elongation has a kink now, as smooth as an echo of this number.
     fn kink(&mut self, echo: u32) {
-        self.echoes.of_kink(self.t, echo, &self.setting);
+        if !self.setting.is_sampled() {
+            self.echoes.of_kink(self.t, echo, &self.setting);
+        }
+    }
+}
+
+/// A step of length `h` where there is this `room` before an end, to which no tiny step is left.
+fn part_of(room: f64, h: f64) -> f64 {
+    match room < h {
+        true => room,
+        false => h.min(0.5 * room.max(h)),
     }
 }

@@ -20,6 +20,7 @@ mod past;
 mod pchip;
 mod ramp;
 mod random;
+mod readings;
 mod setting;
 mod steps;
 mod switch_on;
@@ -127,6 +128,19 @@ fn motions_by_formulas() {
     assert!(tally.compared > 5 * tally.asked, "{tally:?}");
 }
 
+/// The same with readings at equal times, held in between, and here and there dashpots, limits,
+/// memory or latency.
+#[test]
+fn motions_held_by_chance() {
+    let total = given("SLIPMAP_CASES").map_or(60, |n| n as usize);
+    let tally = ask("held motions", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x4e1d, number);
+        against::motion(&random::held(&mut chance))
+    });
+    holds(&tally, 0.03, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
@@ -140,6 +154,7 @@ fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64
             tau,
             memory: 0.0,
             latency: 0.0,
+            sample_time: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,
@@ -272,6 +287,7 @@ fn starts_of_basins() {
             tau,
             memory: 0.0,
             latency: 0.0,
+            sample_time: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,
@@ -409,12 +425,15 @@ fn switching_on_of_a_rig() {
 fn motions_of_the_reference() {
     let motions = tables::motions();
     assert_eq!(motions.len(), 60);
-    assert_eq!(wrong_events(&motions), [0, 0], "of slipmap and the referee");
+    let events = motions
+        .iter()
+        .map(|(start, events)| (start, events.as_slice()));
+    assert_eq!(wrong_events(events), [0, 0], "of slipmap and the referee");
 }
 
 /// In how many motions events differ from those expected by more than 1e-7: by slipmap at its
 /// default tolerance, and by this referee.
-fn wrong_events(motions: &[(Start, Vec<Happened>)]) -> [usize; 2] {
+fn wrong_events<'a>(motions: impl Iterator<Item = (&'a Start, &'a [Happened])>) -> [usize; 2] {
     let mut wrong = [0; 2];
     for (start, expected) in motions {
         let text = asked::case_file(start);
@@ -438,9 +457,18 @@ fn wrong_events(motions: &[(Start, Vec<Happened>)]) -> [usize; 2] {
 /// Events and last states of the motions of `rig_motions.csv`, with dashpots and limits.
 #[test]
 fn motions_of_a_rig() {
-    let motions = tables::rig_motions();
-    assert_eq!(motions.len(), 60);
-    for (start, events, (a, x_dot)) in &motions {
+    rig(&tables::rig_motions(), 60);
+}
+
+/// The same of `rig_held.csv`, whose elongation is read at equal times and held in between.
+#[test]
+fn held_motions_of_a_rig() {
+    rig(&tables::held_motions(), 40);
+}
+
+fn rig(motions: &[tables::RigMotion], number: usize) {
+    assert_eq!(motions.len(), number);
+    for (start, events, (a, x_dot)) in motions {
         if events.iter().any(|(event, _)| *event == Event::LiftOff) {
             continue;
         }
@@ -450,10 +478,10 @@ fn motions_of_a_rig() {
         assert!(off < 1e-7, "{found:?}\n{}", asked::simulate_command(&text));
     }
     let events = motions
-        .into_iter()
-        .map(|(start, events, _)| (start, events));
-    let events: Vec<_> = events.collect();
-    assert_eq!(wrong_events(&events), [0, 0], "of slipmap and the referee");
+        .iter()
+        .map(|(start, events, _)| (start, events.as_slice()));
+    let wrong = wrong_events(events);
+    assert_eq!(wrong, [0, 0], "of slipmap and the referee");
 }
 
 /// Critical velocities of `rig_vc.csv`, with dashpots and limits.

@@ -152,6 +152,7 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
             tau: tau * time,
             memory: 0.0,
             latency: 0.0,
+            sample_time: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,
@@ -192,6 +193,17 @@ pub(crate) fn limited(chance: &mut Chance) -> Start {
     }
     let (least, most) = (chance.between(-1.0, 1.0), chance.between(1.0, 4.0));
     limits(chance, &mut start.setting, [least, most]);
+    start
+}
+
+/// A motion whose elongation is read at equal times, perhaps with dashpots, limits, memory and
+/// latency.
+pub(crate) fn held(chance: &mut Chance) -> Start {
+    let mut start = [start, damped, limited, remembering][chance.below(4)](chance);
+    let s = &mut start.setting;
+    let in_delay = [1, 2, 3, 12, 20, 1 + chance.below(40)][chance.below(6)];
+    s.sample_time = s.tau / in_delay as f64;
+    s.latency = (s.latency / s.sample_time).round().min(60.0) * s.sample_time;
     start
 }
 
@@ -259,6 +271,7 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
         tau: chance.log(0.05, 10.0),
         memory: 0.0,
         latency: 0.0,
+        sample_time: 0.0,
         damping: 0.0,
         viscous: 0.0,
         of_v: FREE,

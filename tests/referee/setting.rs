@@ -15,6 +15,8 @@ pub(crate) struct Setting {
     /// R, the memory of the feedback, and its latency δ.
     pub memory: f64,
     pub latency: f64,
+    /// h, the time from reading to reading; 0 without a digital loop.
+    pub sample_time: f64,
     /// c, the dashpot beside the spring, and c_g, that to the ground.
     pub damping: f64,
     pub viscous: f64,
@@ -45,9 +47,15 @@ impl Setting {
         (self.mass / self.stiffness).sqrt()
     }
 
-    /// Whether what is fed back depends on more than the elongation now and one delay ago.
+    /// Whether nothing but the elongation is kept from step to step: what is fed back depends on it
+    /// now and one delay ago, or is made at readings.
     pub(crate) fn is_plain(&self) -> bool {
-        self.memory == 0.0 && self.latency == 0.0
+        self.is_sampled() || (self.memory == 0.0 && self.latency == 0.0)
+    }
+
+    /// Whether the elongation is read at equal times, and what is fed back held in between.
+    pub(crate) fn is_sampled(&self) -> bool {
+        self.sample_time > 0.0
     }
 
     /// For how long the past matters to nine digits.

@@ -82,6 +82,7 @@ impl Row<'_> {
             tau: self.number("tau"),
             memory: 0.0,
             latency: 0.0,
+            sample_time: self.or_zero("sample_time"),
             damping: self.or_zero("damping"),
             viscous: self.or_zero("viscous"),
             of_v: self.limits(["v_min", "v_max"]),
@@ -92,11 +93,20 @@ impl Row<'_> {
     }
 }
 
-/// A motion of `rig_motions.csv`: its start, its events, and a and ẋ at its end.
+/// A motion of `rig_motions.csv` or `rig_held.csv`: its start, its events, and a and ẋ at its end.
 pub(crate) type RigMotion = (Start, Vec<(Event, f64)>, (f64, f64));
 
 /// `rig_motions.csv`: motions with dashpots and limits.
 pub(crate) fn rig_motions() -> Vec<RigMotion> {
+    motions_of_rig(include_str!("../reference/rig_motions.csv"))
+}
+
+/// `rig_held.csv`: the same with readings at equal times, held in between.
+pub(crate) fn held_motions() -> Vec<RigMotion> {
+    motions_of_rig(include_str!("../reference/rig_held.csv"))
+}
+
+fn motions_of_rig(table: &str) -> Vec<RigMotion> {
     let motion = |row: Row| {
         let events = row.word("events").expect("events").split(';');
         let start = Start {
@@ -108,10 +118,7 @@ pub(crate) fn rig_motions() -> Vec<RigMotion> {
         let last = (row.number("a_end"), row.number("x_dot_end"));
         (start, events.map(event).collect(), last)
     };
-    rows(include_str!("../reference/rig_motions.csv"))
-        .into_iter()
-        .map(motion)
-        .collect()
+    rows(table).into_iter().map(motion).collect()
 }
 
 /// `rig_vc.csv`: critical velocities with dashpots and limits.

@@ -99,6 +99,7 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
         horizon,
         tolerance,
         steps,
+        seed,
         ..
     } = &spec.simulation;
     let usual = Simulation::default();
@@ -110,6 +111,9 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
     }
     if *steps != usual.steps {
         said += &format!("steps = {steps}\n");
+    }
+    if *seed != usual.seed {
+        said += &format!("seed = {seed}\n");
     }
     if !said.is_empty() {
         said += "\n";

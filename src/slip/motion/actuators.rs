@@ -91,6 +91,9 @@ impl Motion {
         if !controlled {
             return acting;
         }
+        if self.is_sampled() {
+            return self.held_control();
+        }
         (acting.alpha_v, acting.alpha_n) = (p.feedback.gains.alpha_v, p.feedback.gains.alpha_n);
         if self.held.at_limit() {
             let [velocity, load] = self.spans();

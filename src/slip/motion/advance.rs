@@ -43,6 +43,9 @@ impl Motion {
             self.end_here();
             return None;
         }
+        if self.is_sampled() {
+            return self.advance_sampled(horizon);
+        }
         let controlled = self.t >= self.parameters.switch_on;
         let now = Now {
             controlled,
@@ -272,7 +275,7 @@ impl Motion {
     }
 
     /// Moves on by `length`; the polynomials hold for `radius`.
-    fn finish(&mut self, length: f64, radius: f64) {
+    pub(super) fn go_on(&mut self, length: f64, radius: f64) {
         let order = self.step.order;
         let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
         self.u = value(u, length);
@@ -280,6 +283,12 @@ impl Motion {
         self.t += length;
         self.step.length = length;
         self.step.radius = radius;
+    }
+
+    /// Moves on by `length`, and keeps the step; the polynomials hold for `radius`.
+    fn finish(&mut self, length: f64, radius: f64) {
+        self.go_on(length, radius);
+        let a = &self.step.a[..=self.step.order];
         let around = match self.integrator {
             Integrator::Taylor => radius.max(length),
             // A polynomial through values does not hold outside its step.
@@ -295,7 +304,7 @@ impl Motion {
     }
 
     /// The mode after `event`, which may turn out to be another one.
-    fn change_mode(&mut self, event: Event) -> Event {
+    pub(super) fn change_mode(&mut self, event: Event) -> Event {
         let n = value(&self.step.n[..=self.step.order], self.step.length);
         match event {
             Event::Release => {

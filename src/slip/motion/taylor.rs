@@ -49,8 +49,7 @@ impl Motion {
     pub(super) fn free_length(&self) -> f64 {
         let step = &self.step;
         let (u, a) = (&step.u, &step.a);
-        let speed = u[0].abs().max(self.parameters.v0.abs()).max(SLOWEST);
-        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        let [speed, stretch] = self.sizes();
         // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
         let roughest_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
         let asked = [step.order - 1, step.order].map(|k| {
@@ -65,7 +64,24 @@ impl Motion {
         if self.mode == Mode::Stick {
             return length;
         }
+        self.resolved_by_friction(length)
+    }
+
+    /// The sizes of u and a over which errors of a step count.
+    #[inline]
+    pub(super) fn sizes(&self) -> [f64; 2] {
+        let (u, a) = (self.step.u[0].abs(), self.step.a[0].abs());
+        let speed = u.max(self.parameters.v0.abs()).max(SLOWEST);
+        [speed, a.max(self.parameters.law.mu_s())]
+    }
+
+    /// How far the friction of a step in slip holds to the tolerance, at most `length`.
+    #[inline]
+    pub(super) fn resolved_by_friction(&self, length: f64) -> f64 {
+        let step = &self.step;
+        let [speed, _] = self.sizes();
         let error = self.tolerance * speed / (length * step.n[0].abs());
-        self.friction.resolved(&u[..=step.order], length, error)
+        self.friction
+            .resolved(&step.u[..=step.order], length, error)
     }
 }

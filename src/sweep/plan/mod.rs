@@ -330,15 +330,7 @@ impl Plan {
         }
         facts.extend(spec.basin.iter().flat_map(Basin::facts));
         if spec.follows_motions() || spec.basin.is_some() {
-            let how = &spec.simulation;
-            let horizon = how.horizon.unwrap_or(0.0);
-            let numbers = vec![horizon, how.tolerance, how.steps as f64];
-            facts.push(("simulation", numbers.into()));
-            // Left out where a start is given, and for earlier maps, whose motions began in
-            // equilibrium.
-            if how.disturbance != 0.0 {
-                facts.push(("disturbance", one(how.disturbance)));
-            }
+            facts.extend(spec.simulation.facts());
         }
         facts
     }
