@@ -318,7 +318,7 @@ fn portrait_scales(samples: &[Sample]) -> [Scale; 2] {
 /// The place of steady sliding in the portrait, if it lies inside.
 fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
     let [x, y] = portrait_scales(samples);
-    let place = symbols::sliding(&spec.setting);
+    let place = symbols::sliding(&spec.last_setting());
     let held = place.filter(|(a, v0)| x.holds(*a) && y.holds(*v0));
     held.map(|at| (Symbol::Sliding, at)).into_iter().collect()
 }
