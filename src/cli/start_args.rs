@@ -7,6 +7,7 @@ use crate::setting::setting_text::number;
 use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::corners::Corner;
 use super::failure::Failure;
 use super::parameter_values::{TimeOr, Values, amount_of, amounts, in_units};
 use super::parameters::flag;
@@ -30,6 +31,10 @@ struct TimeArgs {
     #[arg(long, value_name = "T", allow_hyphen_values = true,
           value_parser = amount_of(Parameter::Tau))]
     until: Option<Amount>,
+    /// v0 in time: from T on it is V; with ramp it comes there on a straight line from the corner
+    /// before, or from t = 0. Once for each corner, in the order of time
+    #[arg(long, value_name = "at=T,v0=V[,ramp]", value_parser = Corner::read)]
+    programme: Vec<Corner>,
 }
 
 /// A time of a flag in `units`.
@@ -51,8 +56,13 @@ impl StartArgs {
 
     /// Whether one of the flags is given.
     pub(super) fn any(&self) -> bool {
-        let TimeArgs { switch_on, until } = &self.times;
-        !self.state.is_empty() || switch_on.is_some() || until.is_some()
+        let TimeArgs {
+            switch_on,
+            until,
+            programme,
+        } = &self.times;
+        let times = switch_on.is_some() || until.is_some();
+        !self.state.is_empty() || times || !programme.is_empty()
     }
 
     /// The values of the state at t = 0, in their ranges.
@@ -72,7 +82,11 @@ impl StartArgs {
     /// # Errors
     /// When a value is outside its range.
     pub(super) fn case(&self, setting: &str, units: &Units) -> Result<String, Failure> {
-        let TimeArgs { switch_on, until } = &self.times;
+        let TimeArgs {
+            switch_on,
+            until,
+            programme,
+        } = &self.times;
         let state = self.state(units)?;
         let mut text = String::new();
         if let Some(of) = switch_on {
@@ -88,6 +102,9 @@ impl StartArgs {
                 text += &format!("\n[{name}]\n");
                 text.extend(keys.iter().map(|(key, value)| format!("{key} = {value}\n")));
             }
+        }
+        for corner in programme {
+            text += &corner.table(units)?;
         }
         Ok(text)
     }
