@@ -207,14 +207,19 @@ fn a_programme_by_flags_is_that_of_a_case() {
     let setting = format!("{PLAIN}alpha_v = -0.3\ntau = 4.0\n");
     let corners = "[[programme]]\nat = 9.0\nv0 = 0.25\n\
                    [[programme]]\nat = 12.5\nv0 = 0.2\nramp = true\n";
-    let case = format!("{setting}[trace]\nuntil = 30.0\n{corners}");
+    let case = format!("{setting}[start]\nx_dot0 = 0.0\n[trace]\nuntil = 30.0\n{corners}");
     let backwards = case.replace("12.5", "8.5");
     let folder = Folder::with(&[
         ("setting.toml", &setting),
         ("case.toml", &case),
         ("backwards.toml", &backwards),
     ]);
-    let flags = ["--setting", "setting.toml", "--until", "30", "--programme"];
+    let file = ["--setting", "setting.toml"];
+    let flags = [
+        &file[..],
+        &["--x-dot0", "0", "--until", "30", "--programme"],
+    ]
+    .concat();
     let corners = ["at=9,v0=0.25", "--programme", "at=12.5, v0=0.2, ramp"];
     let told = |args: &[&str]| {
         let mut value = json(&folder, args);

@@ -176,12 +176,13 @@ mod tests {
     fn a_stick_on_a_ramp_has_its_closed_form() {
         let corners = [corner(4.0, 0.5, true)];
         let given = case(coulomb(), 0.1, (0.0, 0.0), &corners);
-        for integrator in [Integrator::Taylor, Integrator::Collocation] {
+        // Powers of s lose digits of what collocation knows at its nodes.
+        for (integrator, most) in [(Integrator::Taylor, 1e-13), (Integrator::Collocation, 1e-9)] {
             let (found, _) = events(&by(integrator, &given), 3.9);
             // 0.1 t + 0.05 t² = 1.
             let release = 21.0_f64.sqrt() - 1.0;
             assert!(
-                matches!(found[..], [(t, Event::Release), ..] if (t - release).abs() < 1e-10),
+                matches!(found[..], [(t, Event::Release), ..] if (t - release).abs() < most),
                 "{found:?}"
             );
         }
@@ -200,10 +201,10 @@ mod tests {
         let e_rate = -(e0 - slope) * sin + rate * cos;
         let left: f64 = end - at;
         let exact = e * left.cos() + e_rate * left.sin();
-        for integrator in [Integrator::Taylor, Integrator::Collocation] {
+        for (integrator, most) in [(Integrator::Taylor, 1e-11), (Integrator::Collocation, 1e-9)] {
             let (found, motion) = events(&by(integrator, &given), end);
             assert_eq!(found, [(at, Event::Programme)]);
-            assert!((motion.a - 0.5 - exact).abs() < 1e-11, "{}", motion.a);
+            assert!((motion.a - 0.5 - exact).abs() < most, "{}", motion.a);
             assert_eq!(motion.parameters().v0, 2.0);
         }
     }
@@ -260,7 +261,11 @@ mod tests {
     /// Under control errors fall with the tolerance.
     #[test]
     fn events_converge_with_the_tolerance() {
-        let corners = [corner(80.0, 0.5, true), corner(95.0, 0.3, false)];
+        let corners = [
+            corner(20.0, 0.5, true),
+            corner(60.0, 0.3, false),
+            corner(80.0, 0.35, true),
+        ];
         let release = |tolerance: f64, integrator: Integrator| {
             let accuracy = Accuracy {
                 integrator,
@@ -275,7 +280,10 @@ mod tests {
             slips.map(|(t, _)| *t).collect::<Vec<_>>()
         };
         let exact = release(1e-15, Integrator::Taylor);
-        assert!(exact.len() > 8, "{exact:?}");
+        assert!(
+            exact.len() >= 5 && exact.iter().any(|t| *t > 70.0),
+            "{exact:?}"
+        );
         let off = |found: Vec<f64>| {
             assert_eq!(found.len(), exact.len());
             let each = found
