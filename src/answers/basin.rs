@@ -139,13 +139,12 @@ impl BasinProblem {
             sliding.tau = 0.0;
         }
         let count = sliding.count(MarginalTolerance::default());
-        let sampled = case.feedback.is_sampled();
         Ok(Some(Self {
             abscissa: case.stable_abscissa()?,
             case,
             region,
             // The count is one of feedback without interruption.
-            unstable: count.n_unstable > 0 && !count.marginal && !sampled,
+            unstable: count.n_unstable > 0 && !count.marginal,
             starts: basin.starts,
             first: 0,
         }))

@@ -22,12 +22,13 @@ pub(crate) const MODES: [(Mode, &str); 3] = [
 ];
 
 /// Events by their numbers in a trace, with their names.
-pub(crate) const EVENTS: [(Event, &str); 5] = [
+pub(crate) const EVENTS: [(Event, &str); 6] = [
     (Event::Release, "release"),
     (Event::Stick, "stick"),
     (Event::Reversal, "reversal"),
     (Event::LiftOff, "liftoff"),
     (Event::SwitchOn, "switch_on"),
+    (Event::Programme, "programme"),
 ];
 
 /// The state at one time, in the case's units.
@@ -97,7 +98,8 @@ impl TraceEvent {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// Samples at strictly increasing times, from 0 to the end of the trace. Every event has one.
-    /// At switch-on, where v or N jumps, there is another one just before it.
+    /// At switch-on and at corners of a programme, where v or N jumps, there is another one just
+    /// before it.
     pub samples: Vec<Sample>,
     /// All events, until the outcome is known and to the end of the trace.
     pub events: Vec<TraceEvent>,
@@ -299,7 +301,7 @@ impl<'c> Recorder<'c> {
             self.x += step.displacement(step.length);
             self.sample_step(begun);
             let over = event == Some(Event::LiftOff) || self.motion.t >= end;
-            if over || event == Some(Event::SwitchOn) {
+            if over || matches!(event, Some(Event::SwitchOn | Event::Programme)) {
                 self.sample_end(begun, !over);
             }
             if self.samples.too_many() {

@@ -5,6 +5,7 @@ use crate::model::Control;
 use crate::report::numbers::grouped;
 use crate::setting::{CaseSpec, Parameter};
 use crate::slip::case::Start;
+use crate::slip::programme::Corner;
 use crate::text::Shown;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -31,6 +32,9 @@ pub(super) struct CaseFacts {
     #[schema(value_type = BTreeMap<String, String>)]
     units: Vec<(&'static str, String)>,
     start: StartFacts,
+    /// The pulling velocity in time; left out where it stays what it is.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    programme: Vec<CornerFacts>,
     /// When control is switched on; null where it never is, or at a phase of stick-slip.
     #[schema(required)]
     switch_on: Option<f64>,
@@ -42,6 +46,15 @@ pub(super) struct CaseFacts {
     /// End of the samples; null where they end when the outcome is known.
     #[schema(required)]
     until: Option<f64>,
+}
+
+/// A corner of the programme of the pulling velocity.
+#[derive(Debug, Serialize, ToSchema)]
+struct CornerFacts {
+    at: f64,
+    v0: f64,
+    /// Whether it comes there on a straight line.
+    ramp: bool,
 }
 
 /// The block at t = 0.
@@ -85,6 +98,12 @@ impl CaseFacts {
                 assumed: spec.start_assumed,
                 switch_on_phase: switch_on.filter(|_| after_release),
             },
+            programme: case
+                .programme
+                .0
+                .iter()
+                .map(|&Corner { at, v0, ramp }| CornerFacts { at, v0, ramp })
+                .collect(),
             switch_on: switch_on.filter(|_| !after_release),
             horizon: case.horizon,
             tolerance: case.accuracy.tolerance,
@@ -133,6 +152,18 @@ impl CaseFacts {
             (None, false) => "",
         };
         rows.row("start", state + how)?;
+        if let Some(last) = self.programme.last() {
+            let [at, v0] = [("time", last.at), ("velocity", last.v0)]
+                .map(|(name, value)| self.with_unit(name, value));
+            let entries = match self.programme.len() {
+                1 => "1 entry".to_owned(),
+                more => format!("{more} entries"),
+            };
+            rows.row(
+                "programme",
+                format!("{entries}; v0 = {v0} from t = {at} on"),
+            )?;
+        }
         rows.row("switch_on", self.switched_on())?;
         let (horizon, steps) = (self.with_unit("time", self.horizon), grouped(self.steps));
         rows.row("horizon", format!("t = {horizon}, {steps} steps at most"))?;

@@ -14,6 +14,7 @@
 //! - `colours`: `--color`, for help, messages and previews
 //! - `completions`: `slipmap completions`
 //! - `control`: controls by name
+//! - `corners`: the flag `--programme`: the corners of v0 in time
 //! - `digits`: how many digits people are shown of a number: `--digits`
 //! - `excerpt`: what a message shows of a text with long lines
 //! - `export`: `slipmap export`: the choice of a table and its contents
@@ -85,6 +86,7 @@ mod cgroup;
 mod colours;
 mod completions;
 mod control;
+mod corners;
 mod digits;
 mod excerpt;
 mod export;

@@ -9,6 +9,7 @@ use crate::text::SpecError;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches};
 
+use super::corners::Corner;
 use super::failure::Failure;
 use super::sets::Set;
 
@@ -106,7 +107,10 @@ pub(super) fn units_of(matches: &ArgMatches, declared: Option<&Units>) -> Units 
         let times = times.into_iter().flatten().filter_map(TimeOr::time);
         let sets = matches.try_get_many::<Set>(id).ok().flatten();
         let sets = sets.into_iter().flatten().map(|set| &set.amount);
-        let mut all = amounts.into_iter().flatten().chain(times).chain(sets);
+        let corners = matches.try_get_many::<Corner>(id).ok().flatten();
+        let corners = corners.into_iter().flatten().flat_map(Corner::amounts);
+        let amounts = amounts.into_iter().flatten().chain(corners);
+        let mut all = amounts.chain(times).chain(sets);
         all.any(Amount::needs_units)
     };
     match declared {

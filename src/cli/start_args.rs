@@ -7,6 +7,7 @@ use crate::setting::setting_text::number;
 use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::corners::Corner;
 use super::failure::Failure;
 use super::parameter_values::{TimeOr, Values, amount_of, amounts, in_units};
 use super::parameters::flag;
@@ -33,6 +34,10 @@ struct TimeArgs {
     /// What the noise of readings is drawn with, a whole number [default: 0]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// v0 in time: from T on it is V; with ramp it comes there on a straight line from the corner
+    /// before, or from t = 0. Once for each corner, in the order of time
+    #[arg(long, value_name = "at=T,v0=V[,ramp]", value_parser = Corner::read)]
+    programme: Vec<Corner>,
 }
 
 /// A time of a flag in `units`.
@@ -58,8 +63,10 @@ impl StartArgs {
             switch_on,
             until,
             seed,
+            programme,
         } = &self.times;
-        !self.state.is_empty() || switch_on.is_some() || until.is_some() || seed.is_some()
+        let times = switch_on.is_some() || until.is_some() || seed.is_some();
+        !self.state.is_empty() || times || !programme.is_empty()
     }
 
     /// The values of the state at t = 0, in their ranges.
@@ -83,6 +90,7 @@ impl StartArgs {
             switch_on,
             until,
             seed,
+            programme,
         } = &self.times;
         let state = self.state(units)?;
         let mut text = String::new();
@@ -100,6 +108,9 @@ impl StartArgs {
                 text += &format!("\n[{name}]\n");
                 text.extend(keys.iter().map(|(key, value)| format!("{key} = {value}\n")));
             }
+        }
+        for corner in programme {
+            text += &corner.table(units)?;
         }
         Ok(text)
     }

@@ -161,6 +161,7 @@ impl Problem {
             groups: self.groups(v0),
             tau: self.feedback.tau,
             channel: self.feedback.channel,
+            sample_time: self.feedback.readings.sample_time,
         }
     }
 

@@ -3,7 +3,7 @@
 //! ```toml
 //! title = "Velocity control"      # optional
 //! switch_on = 70.0                # when control begins to act, 0 by default; false: never
-//! # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
+//! # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on and `programme`
 //! horizon = 1000.0
 //! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
 //! steps = 1000000                 # the most steps
@@ -25,6 +25,15 @@
 //! # or, with switch_on left out: switch_on_phase = 0.2, the time from a release of
 //! # uncontrolled stick-slip, which is t = 0, to switch-on, modulo the period
 //!
+//! [[programme]]                   # optional: v0 in time, in the order of time
+//! at = 50.0                       # from then on
+//! v0 = 0.2
+//!
+//! [[programme]]
+//! at = 90.0
+//! v0 = 0.05
+//! ramp = true                     # linear from the entry before; false by default: a jump
+//!
 //! [trace]                         # optional
 //! until = 150.0                   # end of the trace; by default when the outcome is known
 //! samples = 24                    # in each step of the integrator; or interval = 0.05, in time
@@ -35,6 +44,7 @@
 use super::given::GivenParameters;
 use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
+use super::programme::GivenProgramme;
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::units::Units;
 use super::values::Setting;
@@ -126,7 +136,8 @@ pub(crate) fn is_case_file(text: &str) -> bool {
     };
     let entries = entries(document.get_ref(), "");
     let has = |keys: &[&str]| entries.iter().any(|entry| keys.contains(&entry.key));
-    !has(&OF_SWEEPS) && (has(&["switch_on", "trace"]) || text.parse::<CaseSpec>().is_ok())
+    !has(&OF_SWEEPS)
+        && (has(&["switch_on", "trace", "programme"]) || text.parse::<CaseSpec>().is_ok())
 }
 
 impl CaseSpec {
@@ -144,6 +155,14 @@ impl CaseSpec {
                  readings tell next to nothing of the motion"
             )
         })
+    }
+
+    /// The setting in the end, with the last v0 of a programme.
+    #[must_use]
+    pub fn last_setting(&self) -> Setting {
+        let mut setting = self.setting.clone();
+        setting.set(Parameter::V0, self.case.last_v0());
+        setting
     }
 
     /// The error of a trace that would be too long, at the key of the text that makes it so.
@@ -185,12 +204,19 @@ impl std::str::FromStr for CaseSpec {
         let switch_on = document.take("switch_on", |entry| read_switch_on(entry, &units));
         let trace = document.take("trace", |entry| read_trace(entry, &units));
         let trace = trace.unwrap_or_default();
+        let programme = document.take("programme", |entry| GivenProgramme::read(entry, &units));
         let simulation = Simulation::of(&mut document, &units);
         document.finish()?;
         let setting = setting(&given)?;
         Ok(Self {
             title: title.to_owned(),
-            case: case(&document, &given, &simulation, switch_on, &setting)?,
+            case: case(
+                &document,
+                &given,
+                (&simulation, programme),
+                switch_on,
+                &setting,
+            )?,
             setting,
             start_assumed: !given.has_start(),
             until: trace.until,
@@ -272,7 +298,7 @@ fn setting(given: &GivenParameters) -> Result<Setting, SpecError> {
 fn case(
     document: &Document,
     given: &GivenParameters,
-    simulation: &Simulation,
+    (simulation, programme): (&Simulation, Option<GivenProgramme>),
     switch_on: Option<f64>,
     setting: &Setting,
 ) -> Result<Case, SpecError> {
@@ -293,6 +319,10 @@ fn case(
     if case.switch_on.is_finite() {
         simulation.check_horizon(document.value("horizon"), name, case.switch_on)?;
     }
+    let case = match programme {
+        Some(given) => given.added_to(case, simulation, document.value("horizon"))?,
+        None => case,
+    };
     case.motion().map_err(|error| refused(given, &error))?;
     Ok(case)
 }

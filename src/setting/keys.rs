@@ -334,7 +334,7 @@ pub(crate) const TOLERANCE: [Key; 1] = [key(
 )];
 
 /// The keys of a case file.
-pub(crate) const CASE: [Key; 11] = [
+pub(crate) const CASE: [Key; 12] = [
     TITLE,
     needed("friction", "a table", "the friction law"),
     FIXED,
@@ -344,11 +344,20 @@ pub(crate) const CASE: [Key; 11] = [
         "0",
         "when control begins to act; false: never",
     ),
-    SIMULATION[0],
+    Key {
+        default: Some("1000 sqrt(mass/stiffness) after switch-on and the last `[[programme]]`"),
+        ..SIMULATION[0]
+    },
     SIMULATION[1],
     SIMULATION[2],
     SIMULATION[3],
     START,
+    key(
+        "programme",
+        "up to 1000 tables `[[programme]]`",
+        "v0 stays what it is",
+        "v0 in time",
+    ),
     key(
         "trace",
         "a table",
@@ -356,6 +365,26 @@ pub(crate) const CASE: [Key; 11] = [
         "until when the motion is written, and how densely",
     ),
     UNITS_KEY,
+];
+
+/// The keys of `[[programme]]`.
+pub(crate) const PROGRAMME: [Key; 3] = [
+    needed(
+        "at",
+        "a time greater than 0, to 1e12, later than that of the entry before",
+        "when v0 is this",
+    ),
+    needed(
+        "v0",
+        "a velocity from 1e-12 to 1e12, within v_min and v_max",
+        "the pulling velocity from then on",
+    ),
+    key(
+        "ramp",
+        "true or false",
+        "false: v0 jumps",
+        "whether v0 comes there on a straight line from the entry before, or from t = 0",
+    ),
 ];
 
 /// The keys of `[trace]`.
@@ -452,6 +481,7 @@ mod tests {
             &UNITS,
             &TOLERANCE,
             &CASE,
+            &PROGRAMME,
             &TRACE,
         ] {
             let mut names = names(keys);

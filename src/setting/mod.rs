@@ -35,6 +35,7 @@
 //! - `own_system`: a system from a file with values of its own parameters, in a setting
 //! - `parameter`: a row for every parameter: name, symbol, meaning, unit, range, default, flag
 //! - `point_file`: a point of parameter space as text
+//! - `programme`: v0 in time: the tables `[[programme]]` of a case file
 //! - `quantity`: the quantity of an axis: a parameter of slipmap, or one of a system's own
 //! - `regime_at_v0`: regimes of a working velocity, by name
 //! - `sampling`: what a digital loop asks of the other parameters
@@ -88,6 +89,7 @@ mod noisy_slope;
 mod own_system;
 pub mod parameter;
 pub mod point_file;
+mod programme;
 pub mod quantity;
 pub mod regime_at_v0;
 mod sampling;

@@ -7,9 +7,10 @@ use std::ops::{Range, RangeInclusive};
 use super::parameter::{LARGEST, Parameter};
 use super::units::Units;
 use super::values::Setting;
-use crate::model::ModelError;
+use crate::model::{ModelError, Oscillator};
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
+use crate::slip::programme::Programme;
 use crate::text::Shown;
 use crate::text::document::Document;
 use crate::text::toml_reader::{Entry, SpecError};
@@ -55,7 +56,8 @@ pub(super) fn not_in_motions(setting: &Setting, critical: bool) -> Option<(Param
 /// sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// The time until which the motion is followed; none for 1000 √(M/κ) after switch-on.
+    /// The time until which the motion is followed; none for 1000 √(M/κ) after switch-on, or after
+    /// the last corner of a programme.
     pub horizon: Option<f64>,
     /// Relative error allowed in a step.
     pub tolerance: f64,
@@ -159,6 +161,12 @@ impl Simulation {
         }
     }
 
+    /// The horizon that is given, or else that of a motion whose last change is at `begun`.
+    pub(super) fn horizon_after(&self, begun: f64, oscillator: &Oscillator) -> f64 {
+        let by_default = || begun + HORIZON * oscillator.time_unit();
+        self.horizon.unwrap_or_else(by_default)
+    }
+
     /// The motion of `setting`. Control acts from `switch_on` on, unless the setting has a phase of
     /// switch-on. Without a given start, the block slides at v0, faster by the disturbance. None
     /// without a friction law.
@@ -195,7 +203,7 @@ impl Simulation {
         } else {
             0.0
         };
-        let by_default = || begun + HORIZON * oscillator.time_unit();
+        let horizon = self.horizon_after(begun, &oscillator);
         let mut feedback = setting.feedback();
         feedback.readings.seed = self.seed;
         Ok(Some(Case {
@@ -203,9 +211,10 @@ impl Simulation {
             law,
             feedback,
             v0,
+            programme: Programme::default(),
             switch_on,
             start,
-            horizon: self.horizon.unwrap_or_else(by_default),
+            horizon,
             steps: self.steps,
             accuracy: Accuracy {
                 tolerance: self.tolerance,

@@ -49,7 +49,7 @@ impl SweepSpec {
         let mut document = Document::of(entries(parsed.get_ref(), ""), names(&SWEEP));
         let system = GivenSystem::of(&mut document, text)?;
         document.refuse(
-            &["switch_on", "horizon", "trace", "steps"],
+            &["switch_on", "horizon", "trace", "steps", "programme"],
             "it is a key of a case file, of one motion: `slipmap simulate` takes it; in a sweep, \
              [simulation] has the horizon and the steps",
         );

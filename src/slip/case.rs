@@ -3,6 +3,7 @@
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
+use super::programme::Programme;
 use super::readings;
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
@@ -17,6 +18,7 @@ use crate::model::{
 /// use slipmap::slip::case::{Case, Start};
 /// use slipmap::slip::motion::Accuracy;
 /// use slipmap::slip::outcome::Outcome;
+/// use slipmap::slip::programme::Programme;
 ///
 /// // The letter's Fig. 3(a): control is switched on at t = 40 and ends stick-slip.
 /// let case = Case {
@@ -24,6 +26,7 @@ use crate::model::{
 ///     law: FrictionLaw::weakening(0.5, 0.5, 1.0)?,
 ///     feedback: Feedback::new(-0.33, 0.0, 4.15),
 ///     v0: 0.35,
+///     programme: Programme::default(),
 ///     switch_on: 40.0,
 ///     start: Start::State { x_dot0: 0.0, a0: 0.0 },
 ///     horizon: 4000.0,
@@ -42,8 +45,10 @@ pub struct Case {
     pub law: FrictionLaw,
     /// The feedback, without lags.
     pub feedback: Feedback,
-    /// Pulling velocity.
+    /// Pulling velocity, at t = 0 where it follows a programme.
     pub v0: f64,
+    /// The pulling velocity in time; without corners it stays what it is.
+    pub programme: Programme,
     /// When control is switched on; +∞ for never. Without gains it never is.
     pub switch_on: f64,
     /// The block at t = 0 and before.
@@ -137,7 +142,7 @@ impl Case {
     pub fn motion(&self) -> Result<Motion, CaseError> {
         self.check()?;
         let p = self.parameters();
-        Ok(match self.start {
+        let mut motion = match self.start {
             Start::State { x_dot0, a0 } => {
                 let (u, a) = self.dimensionless(x_dot0, a0);
                 Motion::new(p, self.accuracy, u, a)
@@ -147,7 +152,21 @@ impl Case {
                     .map_err(CaseError::NoCycle)?
                     .0
             }
-        })
+        };
+        self.programme(&mut motion);
+        Ok(motion)
+    }
+
+    /// Sets `motion`, which is at its start, on the programme.
+    fn programme(&self, motion: &mut Motion) {
+        let units = self.units();
+        motion.follow_programme(self.programme.over(units.time, units.velocity));
+    }
+
+    /// The pulling velocity in the end, after the programme.
+    #[must_use]
+    pub fn last_v0(&self) -> f64 {
+        self.programme.last().map_or(self.v0, |corner| corner.v0)
     }
 
     /// Begins the motion of this case, as [`Case::motion`] does, in the memory of another motion.
@@ -168,6 +187,7 @@ impl Case {
                     .map_err(CaseError::NoCycle)?;
             }
         }
+        self.programme(motion);
         Ok(())
     }
 
@@ -253,6 +273,9 @@ impl Case {
             let within = least < value && value < most;
             ModelError::check(name, value, "within the limits of its actuator", within)?;
         }
+        self.programme
+            .check(velocity)
+            .map_err(|wrong| wrong.error)?;
         let switch_on = self.switch_on;
         if switch_on != f64::INFINITY {
             ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
@@ -272,7 +295,7 @@ impl Case {
         readings::check(&self.feedback)
     }
 
-    /// Sliding under the control that acts in the end, in the units of a motion.
+    /// Sliding at the last v0 under the control that acts in the end, in the units of a motion.
     ///
     /// # Errors
     /// When v0 is out of range.
@@ -282,24 +305,27 @@ impl Case {
         } else {
             Control::default()
         };
-        let sliding = SlidingPoint::of_law(&self.law, self.v0)?;
-        let Feedback { tau, channel, .. } = self.feedback.dimensionless(&self.oscillator);
+        let sliding = SlidingPoint::of_law(&self.law, self.last_v0())?;
+        let Feedback {
+            tau,
+            channel,
+            readings,
+            ..
+        } = self.feedback.dimensionless(&self.oscillator);
         Ok(Sliding {
             groups: self.oscillator.groups(sliding, control),
             tau,
             channel,
+            sample_time: readings.sample_time,
         })
     }
 
-    /// The spectral abscissa of sliding under the control that acts in the end, in 1/time. None
-    /// unless sliding is known to be stable.
+    /// The spectral abscissa of sliding at the last v0 under the control that acts in the end, in
+    /// 1/time. None unless sliding is known to be stable.
     ///
     /// # Errors
     /// When v0 is out of range.
     pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
-        if self.feedback.is_sampled() {
-            return Ok(None);
-        }
         let unit = self.oscillator.time_unit();
         let sliding = self.sliding()?;
         Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))
@@ -385,6 +411,7 @@ mod tests {
             law,
             feedback: Feedback::new(-0.33 / units.time, 0.0, 4.15 * units.time),
             v0,
+            programme: Programme::default(),
             switch_on: 70.0 * units.time,
             start: Start::State {
                 x_dot0: 1.01 * v0,

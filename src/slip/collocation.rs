@@ -125,14 +125,14 @@ pub(super) struct Solved {
     pub rest: f64,
 }
 
-/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ from ẋ, a and the delayed
-/// elongation, whose polynomial is `delayed`. With `rounds_off`, terms that are rounding alone are
+/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ from the time since
+/// then, ẋ, a and the delayed elongation, whose polynomial is `delayed`. With `rounds_off`, terms that are rounding alone are
 /// left out. None where the iteration does not converge.
 pub(super) fn solve(
     (u, a): (f64, f64),
     length: f64,
     (delayed, rounds_off): (&[f64], bool),
-    rates: impl Fn(f64, f64, f64) -> (f64, f64),
+    rates: impl Fn(f64, f64, f64, f64) -> (f64, f64),
 ) -> Option<Solved> {
     let rule = &*RULE;
     let past: [f64; NODES] = rule.nodes.map(|node| value(delayed, node * length));
@@ -141,7 +141,7 @@ pub(super) fn solve(
     let scale = 1.0 + u.abs() + a.abs();
     for iteration in 0.. {
         for i in 0..NODES {
-            (rate_u[i], rate_a[i]) = rates(at_u[i], at_a[i], past[i]);
+            (rate_u[i], rate_a[i]) = rates(rule.nodes[i] * length, at_u[i], at_a[i], past[i]);
         }
         let mut change = 0.0_f64;
         for (i, row) in rule.integrals.iter().enumerate() {
@@ -222,7 +222,10 @@ mod tests {
     #[test]
     fn a_harmonic_oscillation_is_solved() {
         // u̇ = a − d, ȧ = −u with d = 0.3 + 0.1 s.
-        let solved = solve((0.2, 0.5), 0.5, (&[0.3, 0.1], false), |u, a, d| (a - d, -u)).unwrap();
+        let solved = solve((0.2, 0.5), 0.5, (&[0.3, 0.1], false), |_, u, a, d| {
+            (a - d, -u)
+        })
+        .unwrap();
         for s in [0.0, 0.1, 0.37, 0.5_f64] {
             // ä = −(a − d): a = d + A cos s + B sin s, ȧ(0) = 0.1 + B = −0.2.
             let (cos, sin) = (s.cos(), s.sin());
@@ -239,8 +242,10 @@ mod tests {
     #[test]
     fn the_rest_falls_with_the_length() {
         let error = |length: f64| {
-            let solved =
-                solve((1.0, 0.0), length, (&[0.0], false), |u, _, _| (-u * u, 0.0)).unwrap();
+            let solved = solve((1.0, 0.0), length, (&[0.0], false), |_, u, _, _| {
+                (-u * u, 0.0)
+            })
+            .unwrap();
             let off = (value(&solved.u, length) - 1.0 / (1.0 + length)).abs();
             assert!(
                 off <= 10.0 * solved.rest + 1e-15,
@@ -255,6 +260,6 @@ mod tests {
 
     #[test]
     fn what_does_not_come_to_rest_is_not_solved() {
-        assert!(solve((1.0, 0.0), 20.0, (&[0.0], false), |u, _, _| (u * u, 0.0)).is_none());
+        assert!(solve((1.0, 0.0), 20.0, (&[0.0], false), |_, u, _, _| (u * u, 0.0)).is_none());
     }
 }

@@ -60,6 +60,7 @@ mod tests {
     use crate::model::{Dashpots, Feedback, FrictionLaw, Oscillator, Table};
     use crate::slip::case::Start;
     use crate::slip::motion::Accuracy;
+    use crate::slip::programme::Programme;
 
     fn case(law: FrictionLaw) -> Case {
         let dashpots = Dashpots {
@@ -73,6 +74,7 @@ mod tests {
             law,
             feedback: Feedback::new(0.0, 0.0, 1.0),
             v0: 1.0,
+            programme: Programme::default(),
             switch_on: f64::INFINITY,
             start: Start::State {
                 x_dot0: 0.0,

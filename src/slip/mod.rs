@@ -5,6 +5,7 @@
 //! - [`forces`]: the forces on the block in a state
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
+//! - [`programme`]: the pulling velocity in time, in steps and ramps
 //! - `sliding`: linear stability of sliding
 //! - [`speeds`]: the speeds that a motion reaches
 //! - [`step`]: the polynomials of one step
@@ -23,6 +24,7 @@ mod graze;
 mod history;
 pub mod motion;
 pub mod outcome;
+pub mod programme;
 mod readings;
 pub mod sliding;
 pub mod speeds;

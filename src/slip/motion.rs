@@ -30,6 +30,7 @@
 //! - `held`: where a signal is beside the values at which actuators reach their limits
 //! - `sampled`: steps between readings of a digital loop
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy
+//! - `programmed`: v0 that follows a programme
 //! - `stick`: a stuck block whose elongation grows evenly
 //! - `taylor`: steps by Taylor's method
 
@@ -40,6 +41,7 @@ mod events;
 mod feedback;
 mod held;
 mod parameters;
+mod programmed;
 mod sampled;
 mod stick;
 mod taylor;
@@ -48,6 +50,7 @@ use super::collocation::NODES;
 use crate::model::law::FrictionSeries;
 use held::Held;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
+use programmed::Course;
 use sampled::Sampled;
 
 use super::history::History;
@@ -101,6 +104,11 @@ pub struct Motion {
     even_since: f64,
     /// The limits at which v and N were in the last step.
     held: Held,
+    /// The slope of v0, and the time of the next corner of its programme: 0 and +∞ without one.
+    slope: f64,
+    corner: f64,
+    /// The programme of v0.
+    course: Option<Box<Course>>,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
     stop: Stop,
@@ -169,6 +177,9 @@ impl Motion {
             signal_kink: 1,
             even_since: f64::INFINITY,
             held: Held::default(),
+            slope: 0.0,
+            corner: f64::INFINITY,
+            course: None,
             step,
             stop: Stop::default(),
         };
@@ -265,6 +276,8 @@ impl Motion {
         (self.kink, self.signal_kink) = (other.kink, other.signal_kink);
         self.even_since = other.even_since;
         self.held = other.held;
+        (self.slope, self.corner) = (other.slope, other.corner);
+        self.course.clone_from(&other.course);
         self.step.clone_from(&other.step);
     }
 
@@ -330,17 +343,17 @@ impl Motion {
         self.is_lost() && (self.history.is_full() || self.signal.is_full())
     }
 
-    /// The parameters.
+    /// The parameters, with v0 as it is now.
     #[must_use]
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
     }
 
-    /// The elongation of continuous sliding at v0.
+    /// The elongation of continuous sliding at v0, as it is in the end.
     #[must_use]
     pub fn sliding_elongation(&self) -> f64 {
-        let p = &self.parameters;
-        p.law.mu_k(p.v0 * p.velocity_unit) + p.dashpots.viscous * p.v0
+        let (p, v0) = (&self.parameters, self.last_v0());
+        p.law.mu_k(v0 * p.velocity_unit) + p.dashpots.viscous * v0
     }
 
     /// The elongation at which a stuck block without control is released forwards, pulled at v0.

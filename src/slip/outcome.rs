@@ -58,7 +58,8 @@ pub struct Limits {
     pub horizon: f64,
     /// The most steps.
     pub steps: u64,
-    /// The spectral abscissa of sliding at v0 under the control that acts, if all roots are stable.
+    /// The spectral abscissa of sliding at the last v0 under the control that acts, if all roots are
+    /// stable.
     pub stable_abscissa: Option<f64>,
     /// How well cycles have to repeat, relative, to be periodic.
     pub repeated: f64,
@@ -73,8 +74,8 @@ pub struct Summary {
     pub outcome: Outcome,
     /// When that was known.
     pub decided: f64,
-    /// From switch-on, or from t = 0 without one, until ẋ stays within 1 % of v0; NaN unless the
-    /// outcome is sliding.
+    /// From switch-on, or from t = 0 without one, until ẋ stays within 1 % of v0, the last one of a
+    /// programme; NaN unless the outcome is sliding.
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,

@@ -10,22 +10,14 @@
 //! Readings are numbered by k, also those before switch-on. The noise of a reading depends on the
 //! seed and on k alone, so it is the same whenever the reading is used, on every machine.
 
+use crate::linear::sampled::multiple;
 use crate::model::elementary::{ln, normals};
 use crate::model::{Channel, Feedback, ModelError, Readings};
 
 /// The most readings that a delay or a latency may span: 8 MB each.
-const MOST_READINGS: f64 = 1e6;
-/// How near a time has to be to a multiple of the time from reading to reading, relative.
-const WHOLE: f64 = 1e-9;
+const MOST_READINGS: u64 = 1_000_000;
 /// Memory that has faded to this share of what was fed back is forgotten.
 const FADED: f64 = 1e-17;
-
-/// How many times `sample_time` goes into `time`, where it does so a whole number of times.
-#[must_use]
-fn whole_multiple(time: f64, sample_time: f64) -> Option<f64> {
-    let times = (time / sample_time).round();
-    ((time - times * sample_time).abs() <= WHOLE * time).then_some(times)
-}
 
 /// Checks the readings of a feedback, and that its delay and latency are whole multiples of the
 /// time between them.
@@ -60,11 +52,11 @@ pub(super) fn check(feedback: &Feedback) -> Result<(), ModelError> {
     if !feedback.is_sampled() {
         return Ok(());
     }
-    let times = |time: f64| whole_multiple(time, sample_time);
-    let whole = times(tau).is_some_and(|times| (1.0..=MOST_READINGS).contains(&times));
+    let times = |time: f64| multiple(time, sample_time);
+    let whole = times(tau).is_some_and(|times| times <= MOST_READINGS);
     let allowed = "a whole multiple of sample_time, at least one and at most a million";
     ModelError::check("tau", tau, allowed, whole)?;
-    let whole = times(latency).is_some_and(|times| times <= MOST_READINGS);
+    let whole = latency == 0.0 || times(latency).is_some_and(|times| times <= MOST_READINGS);
     let allowed = "0 or a whole multiple of sample_time, at most a million";
     ModelError::check("latency", latency, allowed, whole)?;
     Ok(())
@@ -150,7 +142,11 @@ impl Sampler {
         if !(self.acts() && switch_on.is_finite()) {
             return;
         }
-        let times = |time: f64| (time / self.of.sample_time).round().min(MOST_READINGS) as usize;
+        let times = |time: f64| {
+            (time / self.of.sample_time)
+                .round()
+                .min(MOST_READINGS as f64) as usize
+        };
         (self.delay, self.latency) = (times(feedback.tau).max(1), times(feedback.channel.latency));
         let kept = match feedback.channel.memory == 0.0 {
             true => self.latency,
@@ -401,14 +397,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn multiples_are_whole_but_for_rounding() {
-        assert_eq!(whole_multiple(1.2, 0.1), Some(12.0));
-        assert_eq!(whole_multiple(0.0, 0.1), Some(0.0));
-        assert_eq!(whole_multiple(1.2 + 1e-8, 0.1), None);
-        assert_eq!(whole_multiple(0.04, 0.1), None);
-        assert_eq!(whole_multiple(f64::INFINITY, 0.1), None);
     }
 }

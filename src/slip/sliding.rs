@@ -1,6 +1,7 @@
 //! Linear stability of sliding under the feedback of a motion.
 
 use crate::linear::line::{Linear, Roots};
+use crate::linear::sampled::SampledLoop;
 use crate::linear::{Count, MarginalTolerance};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups};
@@ -14,13 +15,16 @@ pub struct Sliding {
     pub tau: f64,
     /// Memory and latency of the feedback.
     pub channel: Channel,
+    /// h √(κ/M), the time from reading to reading; 0 without.
+    pub sample_time: f64,
 }
 
 impl Sliding {
     /// The number of unstable roots. Where it is not known the count is marginal.
     #[must_use]
     pub fn count(&self, tolerance: MarginalTolerance) -> Count {
-        let count = self.roots().line(1.0).count(self.tau, tolerance);
+        let roots = self.roots();
+        let count = roots.and_then(|roots| roots.line(1.0).count(self.tau, tolerance));
         count.unwrap_or(Count {
             n_unstable: 0,
             marginal: true,
@@ -30,7 +34,7 @@ impl Sliding {
     /// The spectral abscissa, in units of √(κ/M), if it is known and all roots are stable.
     #[must_use]
     pub(crate) fn stable_abscissa(&self) -> Option<f64> {
-        let roots = self.roots();
+        let roots = self.roots()?;
         let count = roots
             .line(1.0)
             .count(self.tau, MarginalTolerance::default());
@@ -41,8 +45,16 @@ impl Sliding {
         Some(found.abscissa).filter(|abscissa| found.certified && *abscissa < 0.0)
     }
 
-    fn roots(&self) -> Box<dyn Roots> {
-        Linear::of_feedback(self.groups, self.channel).roots(&Stop::default())
+    /// The roots; none where the latency is no multiple of the sample time.
+    fn roots(&self) -> Option<Box<dyn Roots>> {
+        let linear = match self.sample_time > 0.0 && !self.groups.uncontrolled() {
+            true => {
+                let of_loop = SampledLoop::new(self.groups, self.channel, self.sample_time);
+                Linear::Sampled(of_loop?)
+            }
+            false => Linear::of_feedback(self.groups, self.channel),
+        };
+        Some(linear.roots(&Stop::default()))
     }
 }
 
@@ -65,6 +77,7 @@ mod tests {
                             memory,
                             latency: 0.0,
                         },
+                        sample_time: 0.0,
                     };
                     sliding.count(MarginalTolerance::default()).stable()
                 });
@@ -75,6 +88,7 @@ mod tests {
             groups: Groups::new(b, a_v, 0.0),
             tau,
             channel: Channel { memory, latency },
+            sample_time: 0.0,
         };
         // Stable for 1.63070 < τ < 4.57172.
         let late = |tau: f64| sliding(-1.0, -0.7, tau, 0.8, 0.7);

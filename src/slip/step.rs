@@ -26,8 +26,8 @@ pub struct Step {
     pub(super) late: Coefficients,
     /// Whether the feedback has a latency.
     pub(super) is_late: bool,
-    /// The pulling velocity without S, and the part of S that is added to it.
-    pub(super) pull: (f64, f64),
+    /// The pulling velocity without S, its slope, and the part of S that is added to it.
+    pub(super) pull: (f64, f64, f64),
 }
 
 impl Step {
@@ -43,7 +43,7 @@ impl Step {
         delayed: [0.0; MOST_ORDER + 1],
         late: [0.0; MOST_ORDER + 1],
         is_late: false,
-        pull: (0.0, 0.0),
+        pull: (0.0, 0.0, 0.0),
     };
 
     pub(super) fn range(c: &Coefficients, order: usize) -> &[f64] {
@@ -67,8 +67,8 @@ impl Step {
     /// The pulling velocity at `s`.
     #[must_use]
     pub fn velocity(&self, s: f64) -> f64 {
-        let (v0, alpha_v) = self.pull;
-        v0 + alpha_v * self.fed_back(s)
+        let (v0, slope, alpha_v) = self.pull;
+        v0 + slope * s + alpha_v * self.fed_back(s)
     }
 
     /// S at `s`, which is fed back: a(t) − a(t−τ), with its memory and latency. Meaningless before
@@ -100,6 +100,28 @@ impl Step {
             true => self.late[0],
             false => a - self.delayed[0],
         }
+    }
+
+    /// Becomes the step of no length at its own end.
+    pub(super) fn move_to_end(&mut self) {
+        let (length, order) = (self.length, self.order);
+        let Self {
+            u,
+            a,
+            n,
+            force,
+            delayed,
+            late,
+            ..
+        } = self;
+        for c in [u, a, n, force] {
+            *c = shifted(&c[..=order], length);
+        }
+        for c in [delayed, late] {
+            *c = shifted(&c[..], length);
+        }
+        self.pull.0 += self.pull.1 * length;
+        self.length = 0.0;
     }
 
     /// ẋ and the acceleration at the start of the step.
@@ -198,15 +220,23 @@ impl Step {
     }
 }
 
-/// What acts in a step: v = `v0` + `alpha_v` S and n = `load` + `alpha_n` S, and the dashpots. An
+/// What acts in a step: v = `v0` + `slope` s + `alpha_v` S, s after its start, and n = `load` + `alpha_n` S, and the dashpots. An
 /// actuator at a limit has that limit and no gain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Control {
     pub v0: f64,
+    pub slope: f64,
     pub load: f64,
     pub alpha_v: f64,
     pub alpha_n: f64,
     pub dashpots: Dashpots,
+}
+
+impl Control {
+    /// v without S, its slope, and the part of S.
+    pub(super) fn pull(&self) -> (f64, f64, f64) {
+        (self.v0, self.slope, self.alpha_v)
+    }
 }
 
 impl Step {
@@ -217,10 +247,10 @@ impl Step {
             true => self.late[k],
             false => self.a[k] - self.delayed[k],
         };
-        let (v0, load) = if k == 0 {
-            (control.v0, control.load)
-        } else {
-            (0.0, 0.0)
+        let (v0, load) = match k {
+            0 => (control.v0, control.load),
+            1 => (control.slope, 0.0),
+            _ => (0.0, 0.0),
         };
         self.n[k] = load + control.alpha_n * difference;
         let rate = v0 + control.alpha_v * difference - self.u[k];

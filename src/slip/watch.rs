@@ -60,6 +60,8 @@ struct Repeats {
 struct Watch {
     limits: Limits,
     switch_on: f64,
+    /// Since when v0 is what it is in the end, the last corner of its programme, and that v0.
+    steady: f64,
     v0: f64,
     tau: f64,
     rest: f64,
@@ -129,10 +131,13 @@ impl Watch {
         Self {
             limits,
             switch_on: p.switch_on,
-            v0: p.v0,
+            steady: motion.last_corner(),
+            v0: motion.last_v0(),
             tau,
             rest,
-            scale: (1.0 + p.v0.abs()).max(motion.a.abs()).max(motion.u.abs()),
+            scale: (1.0 + p.v0.abs().max(motion.last_v0()))
+                .max(motion.a.abs())
+                .max(motion.u.abs()),
             steps: 0,
             seen: motion.t,
             outcome: None,
@@ -212,7 +217,7 @@ impl Watch {
             Some(Event::Stick) => self.last_stop = motion.t,
             _ => {}
         }
-        if self.outcome.is_none() && controlled {
+        if self.outcome.is_none() && controlled && start >= self.steady {
             self.see_deviation(motion, step);
         }
     }
@@ -221,9 +226,9 @@ impl Watch {
     /// a delay.
     fn see_release(&mut self, motion: &Motion) {
         let began = std::mem::replace(&mut self.last_release, motion.t);
-        // Cycles before switch-on, or across it, do not count.
+        // Cycles before switch-on or the last corner, or across them, do not count.
         let after_switch_on = began >= self.switch_on || !self.switch_on.is_finite();
-        if !(after_switch_on && self.last_stop > began) {
+        if !(after_switch_on && began >= self.steady && self.last_stop > began) {
             return;
         }
         self.cycles[self.count % CYCLES] = Cycle {

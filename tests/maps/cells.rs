@@ -525,7 +525,7 @@ fn towards(side: StableSide) -> Option<(f64, f64)> {
 fn decays(setting: &slipmap::setting::Setting, sigma: f64) -> bool {
     let (model, unit) = setting.linear().unwrap();
     let tau = setting.get(Parameter::Tau) / unit;
-    RootCounter::new(&model.system()).right_of(tau, -sigma * unit) == RightOf::Roots(0)
+    RootCounter::new(&model.system().unwrap()).right_of(tau, -sigma * unit) == RightOf::Roots(0)
 }
 
 /// Sweeps with boundaries, and the parameters of their planes.

@@ -201,6 +201,67 @@ fn flags_of_start_and_end_are_the_keys_of_a_case() {
     assert!(events(&never, "switch_on").is_empty());
 }
 
+/// Corners of v0 as flags are those of the keys, in the JSON of the case too; mistakes are told.
+#[test]
+fn a_programme_by_flags_is_that_of_a_case() {
+    let setting = format!("{PLAIN}alpha_v = -0.3\ntau = 4.0\n");
+    let corners = "[[programme]]\nat = 9.0\nv0 = 0.25\n\
+                   [[programme]]\nat = 12.5\nv0 = 0.2\nramp = true\n";
+    let case = format!("{setting}[start]\nx_dot0 = 0.0\n[trace]\nuntil = 30.0\n{corners}");
+    let backwards = case.replace("12.5", "8.5");
+    let folder = Folder::with(&[
+        ("setting.toml", &setting),
+        ("case.toml", &case),
+        ("backwards.toml", &backwards),
+    ]);
+    let file = ["--setting", "setting.toml"];
+    let flags = [
+        &file[..],
+        &["--x-dot0", "0", "--until", "30", "--programme"],
+    ]
+    .concat();
+    let corners = ["at=9,v0=0.25", "--programme", "at=12.5, v0=0.2, ramp"];
+    let told = |args: &[&str]| {
+        let mut value = json(&folder, args);
+        value.as_object_mut().unwrap().remove("trace").unwrap();
+        value
+    };
+    let [one, other] = [told(&["case.toml"]), told(&[&flags[..], &corners].concat())];
+    assert_eq!(one, other);
+    let times: Vec<f64> = events(&one, "programme").iter().map(|e| e.0).collect();
+    assert_eq!(times, [9.0, 12.5]);
+    let facts = &one["inputs"]["case"]["programme"];
+    assert_eq!(
+        (&facts[1]["at"], &facts[1]["ramp"]),
+        (&12.5.into(), &true.into())
+    );
+    // v jumps at the first corner and bends at the second one.
+    let file = hdf5::File::open(folder.path().join("case.h5")).unwrap();
+    let [t, v] = ["t", "v"].map(|name| file.dataset(name).unwrap().read_raw::<f64>().unwrap());
+    let at = t.iter().position(|t| *t == 9.0).unwrap();
+    assert!((v[at] - v[at - 1] - 0.15).abs() < 1e-9 && t[at] - t[at - 1] < 1e-9);
+    let at = t.iter().position(|t| *t == 12.5).unwrap();
+    assert!((v[at] - v[at - 1]).abs() < 1e-9);
+    expect(
+        &folder.run(&["simulate", "backwards.toml"]),
+        2,
+        "programme[1].at: 8.5 is outside its range: later than the entry before",
+    );
+    for (corner, says) in [
+        ("at=9", "expected at=T,v0=V"),
+        ("at=0,v0=1", "programme[0].at: 0 is outside its range"),
+    ] {
+        let args = [
+            "simulate",
+            "--setting",
+            "setting.toml",
+            "--programme",
+            corner,
+        ];
+        expect(&folder.run(&args), 2, says);
+    }
+}
+
 /// Mistakes in these flags are told as those of the keys, and none of them stands beside a case.
 #[test]
 fn mistakes_in_flags_of_start_and_end() {

@@ -13,6 +13,7 @@ use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::Outcome;
+use slipmap::slip::programme::Programme;
 use slipmap::sweep::Plan;
 
 use crate::map::write;
@@ -63,6 +64,7 @@ fn every_fate_of_the_reference_is_met() {
             law: law(kind, mu0, v_s),
             feedback: Feedback::new(number(alpha_v), number(alpha_n), number(tau)),
             v0: number(v0),
+            programme: Programme::default(),
             switch_on: number(phase),
             start: Start::AfterRelease,
             horizon: 5000.0,

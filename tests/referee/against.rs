@@ -135,6 +135,7 @@ fn named(event: motion::Event) -> Event {
         motion::Event::Reversal => Event::Reversal,
         motion::Event::LiftOff => Event::LiftOff,
         motion::Event::SwitchOn => Event::SwitchOn,
+        motion::Event::Programme => Event::Programme,
     }
 }
 

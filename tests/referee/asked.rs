@@ -3,7 +3,7 @@
 
 use super::law::{Friction, Law};
 use super::random::Start;
-use super::setting::Setting;
+use super::setting::{Corner, Setting};
 
 /// A number as files and flags take it, to the last bit.
 fn number(value: f64) -> String {
@@ -96,8 +96,13 @@ pub(crate) fn case_file(start: &Start) -> String {
         } else {
             0.0
         };
+    let entry = |corner: &Corner| {
+        let numbers = lines(&[("at", corner.at), ("v0", corner.v0)]);
+        format!("[[programme]]\n{numbers}ramp = {}\n", corner.ramp)
+    };
+    let programme: String = s.programme.iter().map(entry).collect();
     format!(
-        "switch_on = {switch_on}\nhorizon = {}\n{}[start]\n{}[trace]\nuntil = {}\n",
+        "switch_on = {switch_on}\nhorizon = {}\n{}[start]\n{}[trace]\nuntil = {}\n{programme}",
         number(horizon),
         law_and_parameters(s),
         lines(&[("x_dot0", start.x_dot0), ("a0", start.a0)]),

@@ -30,6 +30,8 @@ pub(crate) enum Event {
     Reversal,
     LiftOff,
     SwitchOn,
+    /// v0 is at a corner of its programme.
+    Programme,
 }
 
 /// What ends a mode, or the piece of the friction law that holds: each is a number that falls below
@@ -103,6 +105,8 @@ pub(crate) struct Block {
     /// S as it is held, where there are readings, and what has been held before.
     pub(super) held: f64,
     pub(super) signals: Vec<f64>,
+    /// How many corners of the programme are behind.
+    behind: usize,
 }
 
 impl Block {
@@ -123,7 +127,7 @@ impl Block {
     pub(crate) fn released(setting: Setting, pace: Pace) -> Option<Self> {
         let s = &setting;
         let load = s.n(s.even_signal());
-        let rate = s.v(s.even_signal());
+        let rate = s.v(s.v0, s.even_signal());
         let a = (s.friction.mu_s * load - s.damping * rate) / s.stiffness;
         let pasts = [
             Past::rising(0.0, a, s.v0),
@@ -155,6 +159,7 @@ impl Block {
             arriving: 0.0,
             held: 0.0,
             signals: Vec::new(),
+            behind: 0,
         };
         block.kink(1);
         block.look_at_limits();
@@ -173,12 +178,34 @@ impl Block {
     /// A command less its limit of this number, and its rate.
     fn beyond(&self, limit: usize, at: &Look) -> (f64, f64) {
         let s = &self.setting;
-        let (rest, gain, limits) = match limit < 2 {
-            true => (s.v0, s.alpha_v, s.of_v),
-            false => (s.load, s.alpha_n, s.of_load),
+        let ((rest, drift), gain, limits) = match limit < 2 {
+            true => (self.unperturbed(at.t), s.alpha_v, s.of_v),
+            false => ((s.load, 0.0), s.alpha_n, s.of_load),
         };
         let off = rest + gain * at.signal - limits[limit % 2];
-        (off, gain * at.signal_rate)
+        (off, drift + gain * at.signal_rate)
+    }
+
+    /// v0 at a time between the last corner and the next one, and its rate.
+    fn unperturbed(&self, t: f64) -> (f64, f64) {
+        let (s, behind) = (&self.setting, self.behind);
+        let (since, from) = match behind.checked_sub(1) {
+            Some(last) => (s.programme[last].at, s.programme[last].v0),
+            None => (0.0, s.v0),
+        };
+        match s.programme.get(behind).filter(|next| next.ramp) {
+            Some(next) => {
+                let (rise, time) = (next.v0 - from, next.at - since);
+                (from + rise * ((t - since) / time), rise / time)
+            }
+            None => (from, 0.0),
+        }
+    }
+
+    /// The time of the next corner.
+    fn next_corner(&self) -> f64 {
+        let next = self.setting.programme.get(self.behind);
+        next.map_or(f64::INFINITY, |corner| corner.at)
     }
 
     /// Changes v0 from now on.
@@ -203,6 +230,13 @@ impl Block {
         if !self.controlled && self.t >= self.setting.switch_on {
             self.switch_on();
             return Some(Event::SwitchOn);
+        }
+        if self.t >= self.next_corner() {
+            self.behind += 1;
+            self.stuck_since = self.t;
+            self.kink(1);
+            self.look_at_limits();
+            return Some(Event::Programme);
         }
         if self.controlled && self.t >= self.next_reading() - self.nearly() {
             self.read();
@@ -281,7 +315,7 @@ impl Block {
     fn look(&self, t: f64, u: f64, a: f64) -> Look {
         let s = &self.setting;
         let (delayed, delayed_rate) = self.delayed(t);
-        let (u_rate, a_rate) = self.rates(u, a, delayed);
+        let (u_rate, a_rate) = self.rates(t, u, a, delayed);
         let mut look = Look {
             t,
             u,
@@ -306,6 +340,9 @@ impl Block {
             if free(0) {
                 look.pull_rate += s.damping * s.alpha_v * look.signal_rate;
             }
+        }
+        if !self.controlled || self.sides[0] > 0.0 && self.sides[1] < 0.0 {
+            look.pull_rate += s.damping * self.unperturbed(t).1;
         }
         look
     }
@@ -357,13 +394,13 @@ impl Block {
     }
 
     /// ẍ and ȧ.
-    fn rates(&self, u: f64, a: f64, delayed: f64) -> (f64, f64) {
+    fn rates(&self, t: f64, u: f64, a: f64, delayed: f64) -> (f64, f64) {
         let s = &self.setting;
         let difference = match self.controlled {
             true => self.fed_back(a, delayed),
             false => 0.0,
         };
-        let v = s.v(difference);
+        let v = s.v(self.unperturbed(t).0, difference);
         let Mode::Slip(sign) = self.mode else {
             return (0.0, v);
         };
@@ -379,9 +416,9 @@ impl Block {
         let middle = self.delayed(t + 0.5 * h).0;
         let end = self.delayed(t + h).0;
         let k1 = (from.u_rate, from.a_rate);
-        let k2 = self.rates(u + 0.5 * h * k1.0, a + 0.5 * h * k1.1, middle);
-        let k3 = self.rates(u + 0.5 * h * k2.0, a + 0.5 * h * k2.1, middle);
-        let k4 = self.rates(u + h * k3.0, a + h * k3.1, end);
+        let k2 = self.rates(t + 0.5 * h, u + 0.5 * h * k1.0, a + 0.5 * h * k1.1, middle);
+        let k3 = self.rates(t + 0.5 * h, u + 0.5 * h * k2.0, a + 0.5 * h * k2.1, middle);
+        let k4 = self.rates(t + h, u + h * k3.0, a + h * k3.1, end);
         self.look(
             t + h,
             u + h / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0),
@@ -393,7 +430,7 @@ impl Block {
     /// up to the next kink.
     fn step_length(&self, now: &Look, until: f64) -> f64 {
         let s = &self.setting;
-        let mut end = until;
+        let mut end = until.min(self.next_corner());
         if self.controlled || !s.is_plain() {
             end = end.min(self.echoes.next());
         }
@@ -454,7 +491,9 @@ impl Block {
         let plain = s.is_plain();
         let long = self.t - self.stuck_since >= s.tau + s.latency;
         let evenly = s.alpha_v == 0.0 && s.memory == 0.0 && long;
-        self.mode == Mode::Stick && ((!self.controlled && plain) || evenly || s.is_sampled())
+        let evenly = evenly || s.is_sampled();
+        let steady = self.unperturbed(self.t).1 == 0.0;
+        steady && self.mode == Mode::Stick && ((!self.controlled && plain) || evenly)
     }
 
     /// A little more than the time until a guard falls below 0, if all go on as they do.

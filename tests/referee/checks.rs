@@ -27,6 +27,7 @@ fn setting(law: Law, (alpha_v, alpha_n): (f64, f64), tau: f64, v0: f64) -> Setti
         viscous: 0.0,
         of_v: FREE,
         of_load: FREE,
+        programme: Vec::new(),
         v0,
         switch_on: 0.0,
     }

@@ -116,6 +116,19 @@ fn motions_with_limits() {
     assert!(tally.compared > 5 * tally.asked, "{tally:?}");
 }
 
+/// The same with programmes of v0, and here and there dashpots, limits, memory or latency. Corners
+/// are events.
+#[test]
+fn motions_by_programmes() {
+    let total = given("SLIPMAP_CASES").map_or(24, |n| n as usize);
+    let tally = ask("motions by programmes", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x9609, number);
+        against::motion(&random::programmed(&mut chance))
+    });
+    holds(&tally, 0.05, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
 /// The same with friction laws that are formulas.
 #[test]
 fn motions_by_formulas() {
@@ -159,6 +172,7 @@ fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64
             viscous: 0.0,
             of_v: FREE,
             of_load: FREE,
+            programme: Vec::new(),
             v0,
             switch_on: 0.0,
         },
@@ -292,6 +306,7 @@ fn starts_of_basins() {
             viscous: 0.0,
             of_v: FREE,
             of_load: FREE,
+            programme: Vec::new(),
             v0,
             switch_on: 0.0,
         };

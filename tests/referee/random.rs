@@ -2,7 +2,7 @@
 
 use super::law::{Friction, Law, Shape};
 use super::pchip::Curve;
-use super::setting::{FREE, Setting};
+use super::setting::{Corner, FREE, Setting};
 
 /// Numbers that look random, the same for the same seed.
 pub(crate) struct Chance(u64);
@@ -157,6 +157,7 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
             viscous: 0.0,
             of_v: FREE,
             of_load: FREE,
+            programme: Vec::new(),
             v0: v0 * length / time,
             switch_on: switch_on * time,
         },
@@ -222,6 +223,27 @@ fn limits(chance: &mut Chance, setting: &mut Setting, of_v: [f64; 2]) {
     }
 }
 
+/// A motion whose v0 follows a programme of steps and ramps, here and there with dashpots, limits,
+/// memory or latency.
+pub(crate) fn programmed(chance: &mut Chance) -> Start {
+    let kinds = [start, damped, damped, limited, limited, remembering];
+    let mut start = kinds[chance.below(6)](chance);
+    let (v0, limits) = (start.setting.v0, start.setting.of_v);
+    // A tenth of the way to a limit is left.
+    let [least, most] = limits.map(|limit| 0.9 * limit + 0.1 * v0);
+    let count = 1 + chance.below(5);
+    let mut at = 0.0;
+    for _ in 0..count {
+        at += chance.between(0.02, 0.8) * start.horizon / count as f64;
+        start.setting.programme.push(Corner {
+            at,
+            v0: (v0 * chance.log(0.25, 4.0)).clamp(least.max(0.05 * v0), most),
+            ramp: chance.below(2) == 0,
+        });
+    }
+    start
+}
+
 /// Dashpots with damping ratios up to a half.
 fn dashpots(chance: &mut Chance, setting: &mut Setting) {
     let unit = (setting.stiffness * setting.mass).sqrt();
@@ -276,6 +298,7 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
         viscous: 0.0,
         of_v: FREE,
         of_load: FREE,
+        programme: Vec::new(),
         v0: 1.0,
         switch_on: 0.0,
     }

@@ -23,18 +23,28 @@ pub(crate) struct Setting {
     /// What v and N are clipped to, from below and from above.
     pub of_v: [f64; 2],
     pub of_load: [f64; 2],
+    /// At t = 0, and what becomes of it.
     pub v0: f64,
+    pub programme: Vec<Corner>,
     /// When control begins to act; infinite for never.
     pub switch_on: f64,
+}
+
+/// From a time on v0 is this; `ramp`: it comes there on a straight line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corner {
+    pub at: f64,
+    pub v0: f64,
+    pub ramp: bool,
 }
 
 /// No limits.
 pub(crate) const FREE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Setting {
-    /// v where S is this.
-    pub(crate) fn v(&self, signal: f64) -> f64 {
-        clip(self.v0 + self.alpha_v * signal, self.of_v)
+    /// v where S is this, beside this v0.
+    pub(crate) fn v(&self, v0: f64, signal: f64) -> f64 {
+        clip(v0 + self.alpha_v * signal, self.of_v)
     }
 
     /// N where S is this.

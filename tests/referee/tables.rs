@@ -87,6 +87,7 @@ impl Row<'_> {
             viscous: self.or_zero("viscous"),
             of_v: self.limits(["v_min", "v_max"]),
             of_load: self.limits(["load_min", "load_max"]),
+            programme: Vec::new(),
             v0: self.word("v0").map_or(1.0, |_| self.number("v0")),
             switch_on: self.or_zero("switch_on"),
         }

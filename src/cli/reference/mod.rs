@@ -272,6 +272,8 @@ fn sweep_files(page: &mut String) {
     keys_of(page, &keys::CASE);
     heading(page, 2, "`[trace]`");
     keys_of(page, &keys::TRACE);
+    heading(page, 2, "`[[programme]]`");
+    keys_of(page, &keys::PROGRAMME);
 }
 
 fn system_files(page: &mut String) {

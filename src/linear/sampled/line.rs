@@ -313,3 +313,17 @@ impl Intervals for Listed<'_> {
         self.gave_up
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::multiple;
+
+    #[test]
+    fn multiples_are_whole_but_for_rounding() {
+        assert_eq!(multiple(1.2, 0.1), Some(12));
+        assert_eq!(multiple(0.0, 0.1), None);
+        assert_eq!(multiple(1.2 + 1e-8, 0.1), None);
+        assert_eq!(multiple(0.04, 0.1), None);
+        assert_eq!(multiple(f64::INFINITY, 0.1), None);
+    }
+}

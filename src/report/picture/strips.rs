@@ -6,7 +6,7 @@ use super::text::{Rich, suffix};
 use crate::answers::trace::Sample;
 use crate::meaning::colour::{self, FRICTION_FORCE, PULLING_FORCE, Rgb};
 use crate::meaning::scale::Scale;
-use crate::setting::{CaseSpec, Parameter};
+use crate::setting::CaseSpec;
 use crate::slip::outcome::Outcome;
 
 /// Width of a curve.
@@ -165,7 +165,7 @@ fn deviation(spec: &CaseSpec, outcome: Outcome, span: &Span, unit: &str) -> Opti
     if outcome != Outcome::Sliding {
         return None;
     }
-    let v0 = spec.setting.get(Parameter::V0);
+    let v0 = spec.case.last_v0();
     let of = move |s: &Sample| (s.x_dot - v0).abs();
     let period = free_period(spec);
     let [begin, end] = span.ends();

@@ -136,6 +136,11 @@ fn notes(spec: &CaseSpec, trace: &Trace, span: &Span) -> Vec<Rich> {
             notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
         }
     }
+    if let Some(last) = spec.case.programme.last() {
+        let unit = suffix(&units.of_parameter(Parameter::V0), " ", "");
+        let last = format!("in the end v_0 = {}{unit}", number(last.v0));
+        notes.push(Rich::default().and_formula(&last));
+    }
     let time = |t: f64| format!("{}{}", number(t), suffix(&units.time(), " ", ""));
     let summary = &trace.summary;
     let became = Rich::plain("outcome: ");
@@ -318,7 +323,7 @@ fn portrait_scales(samples: &[Sample]) -> [Scale; 2] {
 /// The place of steady sliding in the portrait, if it lies inside.
 fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
     let [x, y] = portrait_scales(samples);
-    let place = symbols::sliding(&spec.setting);
+    let place = symbols::sliding(&spec.last_setting());
     let held = place.filter(|(a, v0)| x.holds(*a) && y.holds(*v0));
     held.map(|at| (Symbol::Sliding, at)).into_iter().collect()
 }

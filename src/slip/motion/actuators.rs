@@ -32,6 +32,15 @@ impl Motion {
         ]
     }
 
+    /// The slope of v0 over α_v: that of S at which the command of v is constant.
+    fn tilt(&self) -> f64 {
+        let alpha_v = self.parameters.feedback.gains.alpha_v;
+        match self.slope != 0.0 && alpha_v != 0.0 {
+            true => self.slope / alpha_v,
+            false => 0.0,
+        }
+    }
+
     /// The noise of S.
     fn signal_noise(&self) -> f64 {
         let past = match self.step.is_late {
@@ -65,10 +74,15 @@ impl Motion {
             return None;
         }
         let [velocity, load] = self.spans();
-        let signal = self.step.signal();
-        let signal = &signal[..=self.step.order];
+        let mut signal = self.step.signal();
+        let order = self.step.order;
         let slack = self.signal_noise();
-        let of_velocity = velocity.left(self.held.velocity, signal, slack, length);
+        // The command v0 + α_v S is that of S + v0′ s/α_v with a constant v0.
+        let (untilted, tilt) = (signal[1], self.tilt());
+        signal[1] += tilt;
+        let of_velocity = velocity.left(self.held.velocity, &signal[..=order], slack, length);
+        signal[1] = untilted;
+        let signal = &signal[..=order];
         let before = of_velocity.unwrap_or(length);
         let of_load = load.left(self.held.load, signal, slack, before);
         match (of_load, of_velocity) {
@@ -83,6 +97,7 @@ impl Motion {
         let p = &self.parameters;
         let mut acting = Control {
             v0: p.v0,
+            slope: self.slope,
             load: 1.0,
             alpha_v: 0.0,
             alpha_n: 0.0,
@@ -98,7 +113,7 @@ impl Motion {
         if self.held.at_limit() {
             let [velocity, load] = self.spans();
             if let Some(limit) = velocity.held_at(self.held.velocity) {
-                (acting.v0, acting.alpha_v) = (limit, 0.0);
+                (acting.v0, acting.slope, acting.alpha_v) = (limit, 0.0, 0.0);
             }
             if let Some(limit) = load.held_at(self.held.load) {
                 (acting.load, acting.alpha_n) = (limit, 0.0);

@@ -43,6 +43,10 @@ impl Motion {
             self.end_here();
             return None;
         }
+        if self.corner <= self.t {
+            return Some(self.pass_corner_here());
+        }
+        let horizon = horizon.min(self.corner);
         if self.is_sampled() {
             return self.advance_sampled(horizon);
         }
@@ -64,7 +68,11 @@ impl Motion {
         let length = self.length(radius, limit, &delay, now);
         let (length, end) = self.first_end(controlled, length);
         let until_switch = self.parameters.switch_on - self.t;
+        let until_corner = self.corner - self.t;
         self.finish(length, radius);
+        if self.slope != 0.0 {
+            self.climb();
+        }
         if self.mode == Mode::Stick {
             self.note_evenness();
         }
@@ -73,12 +81,17 @@ impl Motion {
                 self.t = self.parameters.switch_on;
                 Some(Event::SwitchOn)
             }
+            End::OfLength if length == until_corner && self.course.is_some() => {
+                self.t = self.corner;
+                Some(Event::Programme)
+            }
             End::Event(event) => Some(event),
             _ => None,
         };
         self.kink = match (end, event) {
             (End::Kink(kink), _) => kink,
             (_, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
+            (_, Some(Event::Programme)) => self.pass_corner(),
             (_, Some(_)) => 2,
             (_, None) => SMOOTH,
         };

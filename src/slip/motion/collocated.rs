@@ -19,7 +19,7 @@ impl Motion {
     /// The delayed polynomial has to be filled before.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
-        self.step.pull = (control.v0, control.alpha_v);
+        self.step.pull = control.pull();
         let load = control.load + control.alpha_n * self.step.fed_back_at_start(self.a);
         let mut length = self.step_of_scale(control, load).min(limit);
         let reads = self.parameters.feedback.echoes();
@@ -59,9 +59,9 @@ impl Motion {
             Mode::Backwards => -1.0,
         };
         let (order, late) = (self.order, self.step.is_late);
-        let rates = |u: f64, a: f64, past: f64| {
+        let rates = |s: f64, u: f64, a: f64, past: f64| {
             let difference = if late { past } else { a - past };
-            let pull = control.v0 + control.alpha_v * difference;
+            let pull = control.v0 + control.slope * s + control.alpha_v * difference;
             let load = control.load + control.alpha_n * difference;
             if direction == 0.0 {
                 (0.0, pull)

@@ -26,6 +26,8 @@ pub enum Event {
     LiftOff,
     /// Control begins to act.
     SwitchOn,
+    /// A corner of the programme of v0.
+    Programme,
 }
 
 /// The parameters of a motion, dimensionless as in the module.

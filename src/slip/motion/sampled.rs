@@ -31,6 +31,9 @@ pub(super) struct Sampled {
     signal: f64,
     velocity: f64,
     load: f64,
+    /// The slope of v on a ramp of v0, and how long v follows it or stays at a limit.
+    slope: f64,
+    lasts: f64,
     /// The order that the last step needed.
     order: usize,
 }
@@ -49,6 +52,7 @@ impl Sampled {
             .restart(feedback, switch_on, [since, 0.0], known);
         self.order = LEAST;
         (self.signal, self.velocity, self.load) = (0.0, parameters.v0, 1.0);
+        (self.slope, self.lasts) = (0.0, f64::INFINITY);
         if self.acts() {
             parameters.feedback.channel = Channel::default();
         }
@@ -64,6 +68,7 @@ impl Sampled {
         self.sampler.copy_from(&other.sampler);
         (self.signal, self.order) = (other.signal, other.order);
         (self.velocity, self.load) = (other.velocity, other.load);
+        (self.slope, self.lasts) = (other.slope, other.lasts);
     }
 }
 
@@ -107,6 +112,7 @@ impl Motion {
     pub(super) fn held_control(&self) -> Control {
         Control {
             v0: self.sampled.velocity,
+            slope: self.sampled.slope,
             load: self.sampled.load,
             alpha_v: 0.0,
             alpha_n: 0.0,
@@ -120,9 +126,32 @@ impl Motion {
         self.hold_actuators(true, signal);
         let p = &self.parameters;
         let Feedback { gains, limits, .. } = p.feedback;
-        self.sampled.velocity = limits.velocity_of(p.v0 + gains.alpha_v * signal);
+        let commanded = p.v0 + gains.alpha_v * signal;
+        self.sampled.velocity = limits.velocity_of(commanded);
         self.sampled.load = limits.load_of(1.0 + gains.alpha_n * signal);
         self.step.late[0] = signal;
+        (self.sampled.slope, self.sampled.lasts) = match self.slope == 0.0 {
+            true => (0.0, f64::INFINITY),
+            false => self.held_ramp(commanded),
+        };
+    }
+
+    /// The slope of v on a ramp of v0 where v is `commanded`, and how long it lasts: until v
+    /// reaches a limit, or leaves the one that it is at.
+    #[cold]
+    fn held_ramp(&self, commanded: f64) -> (f64, f64) {
+        let [least, most] = self.parameters.feedback.limits.velocity;
+        let ahead = if self.slope > 0.0 { most } else { least };
+        let behind = if self.slope > 0.0 { least } else { most };
+        let until = |limit: f64| (limit - commanded) / self.slope;
+        let soon = 4.0 * f64::EPSILON * self.t.abs().max(1.0);
+        if until(behind) > soon {
+            (0.0, until(behind))
+        } else if until(ahead) > soon {
+            (self.slope, until(ahead))
+        } else {
+            (0.0, f64::INFINITY)
+        }
     }
 
     /// [`Motion::advance`] where readings are held.
@@ -131,19 +160,28 @@ impl Motion {
         if controlled && self.t >= self.sampled.sampler.next {
             self.sampled.signal = self.sampled.sampler.read(self.a);
             self.hold_signal();
+        } else if controlled && self.course.is_some() {
+            self.hold_signal();
         }
         let end = match controlled {
             true => self.sampled.sampler.next,
             false => self.parameters.switch_on,
         };
         let (start, end) = (self.t, end.min(horizon));
-        let limit = end - start;
+        let lasts = match controlled {
+            true => self.sampled.lasts,
+            false => f64::INFINITY,
+        };
+        let limit = (end - start).min(lasts);
         let (length, radius, mut event) = match self.mode {
             Mode::Stick => self.stick_held(controlled, limit),
             Mode::Forwards | Mode::Backwards => self.slip_held(controlled, limit),
         };
         self.go_on(length, radius);
-        if length == limit && event.is_none() {
+        if self.slope != 0.0 {
+            self.climb();
+        }
+        if length == end - start && event.is_none() {
             self.t = end;
         }
         if !controlled {
@@ -151,6 +189,10 @@ impl Motion {
             if event.is_none() && self.t >= self.parameters.switch_on {
                 event = Some(Event::SwitchOn);
             }
+        }
+        if event.is_none() && self.t >= self.corner && self.course.is_some() {
+            self.pass_corner();
+            event = Some(Event::Programme);
         }
         self.kink = if event.is_none() { SMOOTH } else { 2 };
         event.map(|event| self.change_mode(event))
@@ -174,20 +216,27 @@ impl Motion {
     fn stick_held(&mut self, controlled: bool, limit: f64) -> (f64, f64, Option<Event>) {
         let Control {
             v0,
+            slope,
             load,
             dashpots: of,
             ..
         } = self.control(controlled);
         let step = &mut self.step;
         let force = self.a + of.damping * v0;
-        step.order = 1;
-        step.pull = (v0, 0.0);
-        step.u[..2].fill(0.0);
-        step.a[..2].copy_from_slice(&[self.a, v0]);
-        step.n[..2].copy_from_slice(&[load, 0.0]);
-        step.force[..2].copy_from_slice(&[force, v0]);
+        step.order = 2;
+        step.pull = (v0, slope, 0.0);
+        step.u[..3].fill(0.0);
+        step.a[..3].copy_from_slice(&[self.a, v0, 0.5 * slope]);
+        step.n[..3].copy_from_slice(&[load, 0.0, 0.0]);
+        step.force[..3].copy_from_slice(&[force, v0 + of.damping * slope, 0.5 * slope]);
         if self.is_lifted(controlled) {
             return (0.0, f64::INFINITY, Some(Event::LiftOff));
+        }
+        if slope != 0.0 {
+            return match self.first_event(limit) {
+                Some((s, event)) => (s, f64::INFINITY, Some(event)),
+                None => (limit, f64::INFINITY, None),
+            };
         }
         let held = self.parameters.law.mu_s() * load;
         let released = [1.0, -1.0].map(|direction| {

@@ -68,7 +68,8 @@ impl Motion {
     /// 1, the slower they die out, so the smaller they have to be.
     pub(super) fn note_evenness(&mut self) {
         let step = &self.step;
-        let even = self.even_rate().is_some_and(|rate| {
+        let rate = self.even_rate().filter(|_| self.slope == 0.0);
+        let even = rate.is_some_and(|rate| {
             let share = (step.length / self.parameters.feedback.tau).min(1.0);
             let dies_out = (self.parameters.v0 / rate).min(1.0);
             let allowed = (EVEN * self.tolerance * share * dies_out).max(ROUNDING);

@@ -17,7 +17,7 @@ impl Motion {
     /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
     pub(super) fn expand(&mut self, controlled: bool) {
         let control = self.control(controlled);
-        self.step.pull = (control.v0, control.alpha_v);
+        self.step.pull = control.pull();
         let step = &mut self.step;
         step.u[0] = self.u;
         step.a[0] = self.a;
