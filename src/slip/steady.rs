@@ -170,6 +170,6 @@ mod tests {
             assert!(!lasting(|cycle| 1.0 + rate * cycle, 100), "{rate}");
             assert!(!lasting(|cycle| (rate * cycle).exp(), 40), "{rate}");
         }
-        assert!(!lasting(|cycle| 0.2 * cycle + scattered(cycle), 50));
+        assert!(!lasting(|cycle| 0.5 * cycle + scattered(cycle), 50));
     }
 }
