@@ -324,7 +324,10 @@ fn print_intervals(
     let text = |[from, to]: [f64; 2]| {
         let unit = if to.is_finite() { &time } else { "" };
         let (from, to) = (digits.of(from), digits.of(to));
-        format!("{from}{time} < tau < {to}{unit}")
+        match stability.sampled {
+            true => format!("{from}{time} <= tau <= {to}{unit}, in whole samples"),
+            false => format!("{from}{time} < tau < {to}{unit}"),
+        }
     };
     print_each(stability, ("stable delays", "them"), text, row)
 }

@@ -34,13 +34,14 @@ pub struct Stability {
     pub reason: Option<&'static str>,
     /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
     /// one is null where it has none. Empty where it is stable at none, null where they are not
-    /// known.
+    /// known. Of a digital loop both ends are stable multiples of the sample time.
     #[cfg_attr(feature = "serve", schema(value_type = Option<Vec<[Option<f64>; 2]>>, required))]
     pub stable_delays: Option<Vec<[f64; 2]>>,
     /// Some are left out.
     pub stable_delays_truncated: bool,
     /// The distance in τ to the nearest change of stability, positive where stable; null where it
-    /// never changes, and where it is not known.
+    /// never changes, and where it is not known. Of a digital loop to the nearest multiple of the
+    /// sample time at which stability is another one.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub delay_margin: f64,
     /// What that distance is: `finite`, `infinite` or `unknown`.
@@ -67,6 +68,9 @@ pub struct Stability {
     /// The real part at which infinitely many roots accumulate; null where they do nowhere.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub essential_abscissa: f64,
+    /// Whether it is a digital loop.
+    #[serde(skip)]
+    pub sampled: bool,
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
@@ -142,6 +146,7 @@ impl Stability {
             let found = model.system().as_ref().map(latencies);
             stability.latencies = found.unwrap_or_default();
         }
+        stability.sampled = matches!(model, Linear::Sampled(_));
         if stability.disputed(time_unit) {
             (stability.marginal, stability.stable) = (true, false);
         }
@@ -193,6 +198,7 @@ impl Stability {
             delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
             n_at_zero_delay: line.n_at_zero_delay(),
+            sampled: false,
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
             crossings: line

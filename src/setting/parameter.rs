@@ -479,7 +479,6 @@ catalogue! {
                 help: "h, time from reading to reading, held in between; 0: no digital loop \
                     [default: 0]",
             }),
-            page: Some(Page::new([0.0, 2.0], [0.0, 2.0]).folded(Folded::Feedback)),
             ..LAG
         };
         /// The standard deviation of the noise of a reading.
