@@ -228,6 +228,8 @@ fn limits(chance: &mut Chance, setting: &mut Setting, of_v: [f64; 2]) {
 pub(crate) fn programmed(chance: &mut Chance) -> Start {
     let kinds = [start, damped, damped, limited, limited, remembering];
     let mut start = kinds[chance.below(6)](chance);
+    // Every corner has an echo in each delay remembered.
+    start.setting.memory = start.setting.memory.clamp(-0.25, 0.25);
     let (v0, limits) = (start.setting.v0, start.setting.of_v);
     // A tenth of the way to a limit is left.
     let [least, most] = limits.map(|limit| 0.9 * limit + 0.1 * v0);
