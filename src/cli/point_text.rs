@@ -324,9 +324,9 @@ fn print_intervals(
     let text = |[from, to]: [f64; 2]| {
         let unit = if to.is_finite() { &time } else { "" };
         let (from, to) = (digits.of(from), digits.of(to));
-        match stability.sampled {
-            true => format!("{from}{time} <= tau <= {to}{unit}, in whole samples"),
-            false => format!("{from}{time} < tau < {to}{unit}"),
+        match stability.sample_time {
+            Some(_) => format!("{from}{time} <= tau <= {to}{unit}, in whole samples"),
+            None => format!("{from}{time} < tau < {to}{unit}"),
         }
     };
     print_each(stability, ("stable delays", "them"), text, row)

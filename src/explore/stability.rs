@@ -68,9 +68,9 @@ pub struct Stability {
     /// The real part at which infinitely many roots accumulate; null where they do nowhere.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub essential_abscissa: f64,
-    /// Whether it is a digital loop.
+    /// The sample time; none where the feedback is not read from time to time.
     #[serde(skip)]
-    pub sampled: bool,
+    pub sample_time: Option<f64>,
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
@@ -146,7 +146,9 @@ impl Stability {
             let found = model.system().as_ref().map(latencies);
             stability.latencies = found.unwrap_or_default();
         }
-        stability.sampled = matches!(model, Linear::Sampled(_));
+        if let Linear::Sampled(of) = model {
+            stability.sample_time = Some(of.sample_time * time_unit);
+        }
         if stability.disputed(time_unit) {
             (stability.marginal, stability.stable) = (true, false);
         }
@@ -198,7 +200,7 @@ impl Stability {
             delay_margin_kind: MarginKind::of(delay_margin),
             delay_margin_sign: sign(delay_margin),
             n_at_zero_delay: line.n_at_zero_delay(),
-            sampled: false,
+            sample_time: None,
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
             crossings: line

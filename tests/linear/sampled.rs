@@ -157,7 +157,8 @@ impl Sampled {
         let radius = (spectrum.abscissa * self.h).exp();
         // Multiple eigenvalues are known to the root of their rounding.
         let near = 1e-6 * (sizes[0] - sizes[2]).clamp(1e-3, 1.0);
-        if !((radius - sizes[0]).abs() <= near) {
+        let off = (radius - sizes[0]).abs();
+        if off.is_nan() || off > near {
             return Some(format!("{self:?}: radius {radius} for {}", sizes[0]));
         }
         if sizes.len() > 3 && sizes[2] - sizes[3] > 1e-6 {

@@ -19,6 +19,7 @@ use crate::linear::general::stable::Change;
 use crate::linear::line::{Intervals, Line};
 use crate::linear::real_zeros::TooMany;
 use crate::linear::stable_delays::{StableInterval, signed_distance};
+use crate::model::elementary::sincos;
 
 /// How near to a multiple of the sample time a delay has to be, relative.
 const WHOLE: f64 = 1e-9;
@@ -118,7 +119,8 @@ impl SampledLoop {
     fn grows_at(&self, junction: &Junction, circle: &Circle) -> bool {
         let zeta = circle.zeta(junction.angle);
         let z = zeta + 1.0;
-        let late = Complex64::from_polar(1.0, self.late as f64 * junction.angle);
+        let (sine, cosine) = sincos(self.late as f64 * junction.angle);
+        let late = Complex64::new(cosine, sine);
         let [p, q] = [self.step.open, self.step.held].map(|c| value(c, zeta));
         let size = late * p - q;
         let slope = (1.0 - self.memory) * late * slope(self.step.open, zeta);

@@ -174,6 +174,11 @@ impl RealFunction for UnitLoop<'_> {
     }
 }
 
+/// The longest latency, in samples, up to which a margin is looked for.
+fn longest_latency(multiple: u64) -> u64 {
+    MOST_DELAYS.saturating_mul(multiple).min(MOST_SAMPLES)
+}
+
 impl SampledLoop {
     fn on_circle(&self, multiple: u64) -> OnCircle<'_> {
         OnCircle {
@@ -210,7 +215,7 @@ impl SampledLoop {
         let found = zeros(&RealGain(self.on_circle(multiple)), PI, |angle, _| {
             take(angle.min(PI));
         });
-        if multiple % 2 == 1 {
+        if !multiple.is_multiple_of(2) {
             take(PI);
         }
         if found.is_err() {
@@ -256,15 +261,11 @@ impl SampledLoop {
     /// thousand delays or 4096 samples.
     #[must_use]
     pub fn latency_margin(&self, multiple: u64) -> Option<u64> {
-        let lost = (0..=self.longest_latency(multiple)).find(|&late| {
+        let lost = (0..=longest_latency(multiple)).find(|&late| {
             let with_latency = Self { late, ..*self };
             with_latency.n_unstable(multiple) != 0
         });
         lost.map(|late| late.saturating_sub(1))
-    }
-
-    fn longest_latency(&self, multiple: u64) -> u64 {
-        MOST_DELAYS.saturating_mul(multiple).min(MOST_SAMPLES)
     }
 
     /// How far upper limits are looked for; times in units of √(M/κ).
@@ -273,7 +274,7 @@ impl SampledLoop {
         Reach {
             gain: f64::INFINITY,
             delay: f64::INFINITY,
-            latency: self.longest_latency(multiple) as f64 * self.sample_time,
+            latency: longest_latency(multiple) as f64 * self.sample_time,
         }
     }
 

@@ -66,7 +66,11 @@ impl SampledLoop {
     pub(super) fn grows_outside(&self, circle: &Circle, weights: Weights) -> bool {
         let Weights { of_u, of_v } = weights;
         let [p, q] = [self.step.open, self.step.held].map(|c| circle.opposite(c));
-        let sign = if self.late % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if self.late.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
         let late = sign * exp(self.late as f64 * circle.growth) * p;
         (of_u * (late - q)).abs() < (of_v * (q - self.memory * late)).abs()
     }

@@ -88,19 +88,24 @@ impl Motion {
             End::Event(event) => Some(event),
             _ => None,
         };
-        self.kink = match (end, event) {
-            (End::Kink(kink), _) => kink,
-            (_, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
-            (_, Some(Event::Programme)) => self.pass_corner(),
-            (_, Some(_)) => 2,
-            (_, None) => SMOOTH,
-        };
+        self.kink = self.kink_at(end, event);
         if now.echoes {
             self.note_kinks(self.kink, &past, controlled);
         } else if self.kink == SMOOTH && length == delay.length && delay.kink != SMOOTH {
             self.kink = self.passed_on(delay.kink);
         }
         event.map(|event| self.change_mode(event))
+    }
+
+    /// The order of the kink of the elongation at the end of a step; passes a corner there.
+    fn kink_at(&mut self, end: End, event: Option<Event>) -> u32 {
+        match (end, event) {
+            (End::Kink(kink), _) => kink,
+            (_, Some(Event::SwitchOn)) if self.parameters.feedback.gains.alpha_v != 0.0 => 1,
+            (_, Some(Event::Programme)) => self.pass_corner(),
+            (_, Some(_)) => 2,
+            (_, None) => SMOOTH,
+        }
     }
 
     /// Where a step that may be this long ends, and by what.
