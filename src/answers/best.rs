@@ -19,6 +19,8 @@ use crate::setting::quantity::Quantity;
 use crate::setting::system::Evaluation;
 use crate::setting::values::Setting;
 
+/// What a sample time has to be where best settings are searched: the plane has every delay.
+const NOT_SEARCHED: &str = "0 where best settings are searched";
 /// Largest |b| for which best settings are searched.
 const STEEPEST: f64 = 1e4;
 
@@ -234,19 +236,11 @@ pub fn best_settings(
     ranges: &Ranges,
     stop: &Stop,
 ) -> Result<BestSettings, NoAnswer> {
-    check_not_sampled(setting)?;
+    setting.check_continuous(NOT_SEARCHED)?;
     let scales = Scales::of(setting, searched)?;
     let letter = gain_of(searched).map(|gain| letter(setting, gain));
     let found = scales.best(letter.transpose()?, setting, searched, ranges, stop)?;
     Ok(scales.settings(&found, ranges))
-}
-
-/// Refuses a digital loop: the plane that is searched has every delay.
-fn check_not_sampled(setting: &Setting) -> Result<(), ModelError> {
-    let sample_time = setting.get(Parameter::SampleTime);
-    let name = Parameter::SampleTime.name();
-    let allowed = "0 where best settings are searched";
-    ModelError::check(name, sample_time, allowed, sample_time == 0.0).map(|_| ())
 }
 
 /// The best setting under joint errors of gain, delay and μ′.
@@ -275,7 +269,7 @@ pub fn robust_setting(
     spread: Changes,
     stop: &Stop,
 ) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
-    check_not_sampled(setting)?;
+    setting.check_continuous(NOT_SEARCHED)?;
     let searched = parameter_of(gain).into();
     let scales = Scales::of(setting, &searched)?;
     setting.check_of_letter(&[], "")?;

@@ -272,14 +272,10 @@ impl SettingMargins {
 
 /// The delay of a digital loop in samples.
 fn samples(setting: &Setting, decay: f64) -> Result<u64, ModelError> {
+    if decay > 0.0 {
+        setting.check_continuous("0 where a decay rate is required")?;
+    }
     let [sample_time, tau] = [Parameter::SampleTime, Parameter::Tau].map(|p| setting.get(p));
-    let name = Parameter::SampleTime.name();
-    ModelError::check(
-        name,
-        sample_time,
-        "0 where a decay rate is required",
-        decay == 0.0,
-    )?;
     multiple(tau, sample_time).ok_or(ModelError {
         parameter: Parameter::Tau.name(),
         value: tau,

@@ -11,7 +11,7 @@ use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::units::Units;
 use crate::setting::values::Setting;
 use crate::text::Shown;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
@@ -29,6 +29,9 @@ fn no_motions() -> Failure {
     Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
 }
 
+/// The flag that rounds delays.
+const ROUND_DELAY: &str = "round-delay";
+
 /// A point of parameter space.
 #[derive(Debug)]
 pub(super) struct ParameterArgs<A: Asks = OfSliding> {
@@ -38,6 +41,8 @@ pub(super) struct ParameterArgs<A: Asks = OfSliding> {
     law: LawArgs,
     /// The units of all numbers.
     units: Units,
+    /// Whether delay and latency are rounded to whole multiples of the sample time.
+    rounds: bool,
     asks: PhantomData<A>,
 }
 
@@ -74,7 +79,12 @@ impl<A: Asks> Args for ParameterArgs<A> {
             }),
             false => command,
         };
-        command.args(Values::flags(Self::of_law).map(Self::offered))
+        let command = command.args(Values::flags(Self::of_law).map(Self::offered));
+        let round = Arg::new(ROUND_DELAY)
+            .long(ROUND_DELAY)
+            .action(ArgAction::SetTrue)
+            .help("With --sample-time: round delay and latency to whole multiples of it");
+        command.arg(round)
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -96,6 +106,7 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
             mu_k: Values::text(matches).cloned(),
             law,
             units,
+            rounds: matches.get_flag(ROUND_DELAY),
             asks: PhantomData,
         })
     }
@@ -334,7 +345,18 @@ impl<A: Asks> ParameterArgs<A> {
         if let Some((message, help)) = setting.excluded_by_limits(left_out, flag) {
             return Err(Failure::bad_input_with_help(message, help));
         }
+        if self.rounds {
+            for (parameter, value) in setting.round_to_samples() {
+                let (given, rounded) = (Shown(value), Shown(setting.get(parameter)));
+                let flag = flag(parameter);
+                say::note(format_args!("{flag} {given} is rounded to {rounded}"));
+            }
+        }
         if let Some((message, help)) = setting.not_sampled(flag) {
+            let help = match self.rounds || !setting.is_between_samples() {
+                true => help,
+                false => format!("{help}; --{ROUND_DELAY} takes the nearer one"),
+            };
             return Err(Failure::bad_input_with_help(message, help));
         }
         if !searched.contains(&Parameter::Tau) {

@@ -54,6 +54,12 @@ impl Excluding {
         })
     }
 
+    /// The need that is not met, in the words of files.
+    pub(super) fn unmet(&self) -> Unmet {
+        let [message, help] = [self.message(Parameter::key), self.help(Parameter::key)];
+        ReportedAt::Parameter(self.limit).refuse(message, help)
+    }
+
     /// The error in words. `name` gives the name of a parameter in the file or on the command line.
     pub(super) fn message(&self, name: fn(Parameter) -> String) -> String {
         let [one, other] = self
@@ -78,9 +84,7 @@ impl Excluding {
 pub(super) fn excluding(asked: &FieldsAsked) -> Option<Unmet> {
     let least = |p| asked.values(p).fold(f64::NAN, f64::min);
     let most = |p| asked.values(p).fold(f64::NAN, f64::max);
-    let found = Excluding::find(least, most)?;
-    let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
-    Some(ReportedAt::Parameter(found.limit).refuse(message, help))
+    Excluding::find(least, most).map(|found| found.unmet())
 }
 
 /// The error of a field that is of limits, where no actuator has one.

@@ -364,21 +364,8 @@ impl GivenParameters {
                 .next()
                 .map_or(default.unwrap_or(f64::NAN), |(_, value)| *value)
         };
-        let refused = |parameter: Parameter, message: String, help: String| SpecError {
-            span: self.place(parameter).cloned(),
-            ..SpecError::whole(message).help(help)
-        };
-        if let Some(found) = Excluding::find(value, value) {
-            let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
-            return Err(refused(found.limit, message, help));
-        }
-        match NotSampled::find(value) {
-            None => Ok(()),
-            Some(found) => {
-                let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
-                Err(refused(found.parameter, message, help))
-            }
-        }
+        let excluding = Excluding::find(value, value).map(|found| found.unmet());
+        self.met(excluding.or_else(|| NotSampled::find(value).map(|found| found.unmet())))
     }
 
     /// Checks that every needed parameter is given, and none that would be ignored. Parameters in

@@ -1,5 +1,7 @@
 //! The keys of sweep and case files, one row for each. Readers, messages and the guide's reference
 //! use the same rows.
+//!
+//! Longer than most files: it is a table, with a row for each key.
 
 /// A key of a file, with the facts about it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,8 @@
 //! What fields need of a sweep: a row for each need, with its message.
 //!
 //! Sweep files ask the rows in stages, between other checks; fields at any points ask all of them.
+//!
+//! Longer than most files: it is a table, with a row for each need.
 
 use super::actuator_limits::{excluding, without_limits};
 use super::axis::Axis;

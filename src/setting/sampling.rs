@@ -5,6 +5,7 @@ use super::needs::{FieldsAsked, ReportedAt, Unmet};
 use super::parameter::Parameter;
 use super::values::Setting;
 use crate::linear::sampled::multiple;
+use crate::model::ModelError;
 use crate::text::Shown;
 
 /// Why readings are not held through lags.
@@ -75,6 +76,12 @@ impl NotSampled {
         gains.into_iter().any(|gain| value(gain) != 0.0)
     }
 
+    /// The need that is not met, in the words of files.
+    pub(super) fn unmet(&self) -> Unmet {
+        let [message, help] = [self.message(Parameter::key), self.help(Parameter::key)];
+        ReportedAt::Parameter(self.parameter).refuse(message, help)
+    }
+
     /// The error in words. `name` gives the name of a parameter in the file or on the command line.
     pub(super) fn message(&self, name: fn(Parameter) -> String) -> String {
         let given = format!("{} = {}", name(self.parameter), Shown(self.value));
@@ -130,12 +137,44 @@ pub(super) fn not_sampled(asked: &FieldsAsked) -> Option<Unmet> {
             p => value(p),
         })
     };
-    let found = asked.values(Parameter::Tau).find_map(with_delay)?;
-    let [message, help] = [found.message(Parameter::key), found.help(Parameter::key)];
-    Some(ReportedAt::Parameter(found.parameter).refuse(message, help))
+    let found = asked.values(Parameter::Tau).find_map(with_delay);
+    found.map(|found| found.unmet())
 }
 
 impl Setting {
+    /// Rounds delay and latency to the nearest whole multiples of the sample time, the delay to at
+    /// least one; those that change, with the values before. A delay shorter than a sample stays.
+    pub(crate) fn round_to_samples(&mut self) -> Vec<(Parameter, f64)> {
+        let sample_time = self.get(Parameter::SampleTime);
+        let mut changed = Vec::new();
+        for (parameter, least) in [(Parameter::Tau, 1.0), (Parameter::Latency, 0.0)] {
+            let value = self.get(parameter);
+            let whole = multiple(value, sample_time).is_some() || value == 0.0;
+            if self.feedback().is_sampled() && !whole && value >= least * sample_time {
+                let rounded = (value / sample_time).round() * sample_time;
+                self.set(parameter, rounded);
+                changed.push((parameter, value));
+            }
+        }
+        changed
+    }
+
+    /// Refuses a digital loop; `allowed` says what a sample time has to be, and where.
+    ///
+    /// # Errors
+    /// Names the sample time.
+    pub fn check_continuous(&self, allowed: &'static str) -> Result<(), ModelError> {
+        let (parameter, value) = (Parameter::SampleTime, self.get(Parameter::SampleTime));
+        let sampled = self.feedback().is_sampled();
+        ModelError::check(parameter.name(), value, allowed, !sampled).map(|_| ())
+    }
+
+    /// Whether what does not go with the sample time is a delay between two multiples of it.
+    pub(crate) fn is_between_samples(&self) -> bool {
+        let found = NotSampled::find(|p| self.get(p));
+        found.is_some_and(|found| matches!(found.why, Why::Between(_)))
+    }
+
     /// The message and the help where a parameter does not go with the sample time; none where all
     /// do. `name` gives the name of a parameter.
     pub(crate) fn not_sampled(&self, name: fn(Parameter) -> String) -> Option<(String, String)> {
@@ -155,6 +194,26 @@ mod tests {
             setting.set(*parameter, *value);
         }
         setting.not_sampled(Parameter::key)
+    }
+
+    #[test]
+    fn delays_are_rounded_to_samples() {
+        let mut setting = Setting::new(None);
+        let given = [
+            (Parameter::AlphaV, -0.3),
+            (Parameter::SampleTime, 0.3),
+            (Parameter::Tau, 4.15),
+            (Parameter::Latency, 0.1),
+        ];
+        for (parameter, value) in given {
+            setting.set(parameter, value);
+        }
+        assert!(setting.is_between_samples());
+        let changed = [(Parameter::Tau, 4.15), (Parameter::Latency, 0.1)];
+        assert_eq!(setting.round_to_samples(), changed);
+        let [tau, latency] = [Parameter::Tau, Parameter::Latency].map(|p| setting.get(p));
+        assert!((tau - 4.2).abs() < 1e-12 && latency == 0.0);
+        assert_eq!(setting.not_sampled(Parameter::key), None);
     }
 
     #[test]

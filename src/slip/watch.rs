@@ -1,5 +1,4 @@
-//! Follows a motion until its outcome is known. Where readings are held, what has lasted long counts
-//! as well as what repeats: see `steady`.
+//! Follows a motion until its outcome is known; by what lasts too, where readings are held.
 
 use std::f64::consts::TAU;
 
@@ -222,8 +221,7 @@ impl Watch {
         }
     }
 
-    /// Adds the cycle that ends with this release, and checks whether cycles repeat over more than
-    /// a delay.
+    /// Adds the cycle that ends with this release, and checks whether cycles repeat.
     fn see_release(&mut self, motion: &Motion) {
         let began = std::mem::replace(&mut self.last_release, motion.t);
         // Cycles before switch-on or the last corner, or across them, do not count.

@@ -24,6 +24,7 @@ mod actuators;
 mod cli;
 mod curves;
 mod damaged;
+mod digital;
 mod export;
 mod fits;
 mod flips;

@@ -22,6 +22,8 @@ use crate::model::elementary::{exp, expm1, norm, sincos};
 /// Zeros smaller than e to this over the number of samples in the delay are not looked for: their
 /// powers vanish.
 const SMALLEST: f64 = -500.0;
+/// The largest ln |z| of a zero that is looked for.
+const LARGEST: f64 = 600.0;
 /// Halvings of a range of ln r until it is as narrow as Newton's method needs.
 const HALVINGS: u32 = 46;
 /// Steps of Newton's method.
@@ -55,10 +57,16 @@ impl SampledLoop {
     /// `wanted` are known; and whether one may be missing.
     fn largest(&self, multiple: u64, wanted: usize) -> (Vec<Zero>, bool) {
         let mut found: Vec<Zero> = Vec::new();
-        let least = SMALLEST / (multiple + self.late) as f64;
-        let total = self.outside(least, multiple);
-        let mut high = 1.0;
-        while self.outside(high, multiple) > 0 && high < 600.0 {
+        let samples = (multiple + self.late) as f64;
+        let smallest = SMALLEST / samples;
+        let (mut least, mut high) = (-1.0 / samples, 1.0 / samples);
+        let enough = 2 * wanted as u64;
+        let mut total = self.outside(least, multiple);
+        while total < enough && least > smallest {
+            least = (2.0 * least).max(smallest);
+            total = self.outside(least, multiple);
+        }
+        while self.outside(high, multiple) > 0 && high < LARGEST {
             high *= 2.0;
         }
         let (width, mut known) = (high - least, 0);

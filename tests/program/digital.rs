@@ -1,0 +1,183 @@
+//! Digital loops from the command line: points, margins, maps, motions with noise, bad input.
+
+use serde_json::Value;
+
+use crate::program::{self, Folder, err, expect, out};
+
+const LETTER: [&str; 4] = ["--mu-prime=-0.3", "--alpha-v=-0.33", "--tau", "4.2"];
+
+fn json(folder: &Folder, args: &[&str]) -> Value {
+    let output = folder.run(args);
+    assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+    program::json(&output)
+}
+
+fn of_letter<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&[command], &LETTER[..], more].concat()
+}
+
+/// A row of `rig_sampled.csv`, and the letter's own point with rare readings.
+#[test]
+fn a_point_tells_its_spectral_radius() {
+    let folder = Folder::new();
+    let row = [
+        "point",
+        "--mu-prime=0.08869164813549879",
+        "--alpha-v=-0.31277025768000316",
+        "--alpha-n=-6.535311495164769",
+        "--tau=0.5061444168731654",
+        "--sample-time=0.04217870140609711",
+        "--json",
+    ];
+    let told = json(&folder, &row);
+    assert_eq!(told["n_unstable"], 0);
+    let radius = told["spectral_radius"].as_f64().unwrap();
+    assert!((radius - 0.9874786725).abs() < 1e-9, "{radius}");
+    assert_eq!(told["certified"], true);
+    let told = json(&folder, &of_letter("point", &["--json"]));
+    assert_eq!(told["spectral_radius"], Value::Null);
+    let told = out(&folder.run(&of_letter("point", &["--sample-time=0.6"])));
+    assert!(told.contains("in whole samples"), "{told}");
+}
+
+/// What `margins` tells is where points change.
+#[test]
+fn margins_are_where_points_change() {
+    let folder = Folder::new();
+    let told = json(
+        &folder,
+        &of_letter("margins", &["--sample-time=0.07", "--json"]),
+    );
+    let count = |gain: f64, tau: f64, latency: f64| {
+        let (gain, tau) = (
+            format!("--alpha-v={:.17}", -0.33 * gain),
+            format!("--tau={tau:.12}"),
+        );
+        let latency = format!("--latency={latency:.12}");
+        let of = ["point", "--mu-prime=-0.3", "--sample-time=0.07", "--json"];
+        let all = [&of[..], &[&gain, &tau, &latency]].concat();
+        json(&folder, &all)["n_unstable"].as_u64().unwrap()
+    };
+    let number = |name: &str| told.pointer(name).unwrap().as_f64().unwrap();
+    for (name, side) in [("/gain_margin/lower", -1.0), ("/gain_margin/upper", 1.0)] {
+        let factor = number(name);
+        assert_eq!(count(factor * (1.0 - side * 1e-6), 4.2, 0.0), 0, "{name}");
+        assert_ne!(count(factor * (1.0 + side * 1e-6), 4.2, 0.0), 0, "{name}");
+    }
+    for (name, side) in [("/tau_margin/from", -1.0), ("/tau_margin/to", 1.0)] {
+        let tau = number(name);
+        assert_eq!(count(1.0, tau - side * 0.07, 0.0), 0, "{name}");
+        assert_ne!(count(1.0, tau, 0.0), 0, "{name}");
+    }
+    let latency = number("/latency_margin");
+    assert_eq!(count(1.0, 4.2, latency), 0);
+    assert_ne!(count(1.0, 4.2, latency + 0.07), 0);
+    let undecided = told["undecided"].as_array().unwrap();
+    assert!(undecided.contains(&"stability_radius".into()), "{told}");
+}
+
+/// A map over the sample time, whose counts the argument principle confirms.
+#[test]
+fn a_map_has_cells_of_digital_loops() {
+    const SWEEP: &str = "
+        fields = [\"n_unstable\", \"abscissa\", \"spectral_radius\", \"delay_margin\"]
+        [axes]
+        sample_time = [0.1, 0.3, 0.35, 0.6, 4.2]
+        alpha_v = { from = -1.0, to = 0.2, points = 61 }
+        [fixed]
+        mu_prime = -0.3
+        tau = 4.2
+    ";
+    let folder = Folder::with(&[("loop.toml", SWEEP)]);
+    expect(&folder.run(&["run", "loop.toml", "-o", "loop.h5"]), 0, "");
+    expect(&folder.run(&["verify", "loop.h5"]), 0, "");
+    let told = json(&folder, &["info", "loop.h5", "--json"]);
+    assert_eq!(told["cells"], 305, "{told}");
+    for (line, place) in [
+        ("fields = [\"gain_margin_lower\"]", "gain_margin_lower"),
+        ("best = true\nfields = [\"n_unstable\"]", "best"),
+        ("boundaries = true\nfields = [\"n_unstable\"]", "boundaries"),
+    ] {
+        let fields = SWEEP.lines().nth(1).unwrap().trim();
+        let text = SWEEP.replace(fields, line).replace("[0.1,", "[0.14, 0.2, ");
+        std::fs::write(folder.path().join("bad.toml"), text).unwrap();
+        expect(&folder.run(&["plan", "bad.toml"]), 2, place);
+    }
+}
+
+/// The same seed gives the same motion, another one another.
+#[test]
+fn noise_is_that_of_the_seed() {
+    let folder = Folder::new();
+    let simulate = |seed: &str, noise: &str| {
+        let (seed, noise) = (format!("--seed={seed}"), format!("--noise={noise}"));
+        let law = [
+            "simulate",
+            "--friction",
+            "weakening",
+            "--mu0=0.5",
+            "--v-s=0.5",
+            "--v0=0.35",
+        ];
+        let digital = [
+            "--alpha-v=-0.33",
+            "--tau=4.2",
+            "--sample-time=0.14",
+            "--json",
+        ];
+        out(&folder.run(&[&law[..], &digital, &[&seed, &noise]].concat()))
+    };
+    let one = simulate("7", "0.001");
+    assert_eq!(one, simulate("7", "0.001"));
+    let numbers = |text: &str| serde_json::from_str::<Value>(text).unwrap()["peak_force"].clone();
+    assert_ne!(numbers(&one), numbers(&simulate("8", "0.001")));
+    assert!(simulate("7", "0").contains("\"sliding\""));
+}
+
+#[test]
+fn what_cannot_be_sampled_is_told() {
+    let folder = Folder::new();
+    for (flags, told) in [
+        (
+            &["--sample-time=5"][..],
+            "--tau = 4.2 is shorter than --sample-time = 5",
+        ),
+        (
+            &["--sample-time=0.4"],
+            "the nearest ones are 4 and 4.4; --round-delay",
+        ),
+        (
+            &["--sample-time=-1"],
+            "--sample-time -1 is outside its range",
+        ),
+        (&["--noise=0.1"], "give --sample-time as well"),
+        (&["--noise=-0.1"], "--noise -0.1 is outside its range"),
+        (
+            &["--sample-time=0.6", "--load-lag=0.1"],
+            "--load-lag = 0.1 does not go with",
+        ),
+        (
+            &["--sample-time=0.6", "--latency=0.7"],
+            "the nearest ones are 0.6 and 1.2",
+        ),
+    ] {
+        expect(&folder.run(&of_letter("point", flags)), 2, told);
+    }
+    let rounded = folder.run(&of_letter("point", &["--sample-time=0.4", "--round-delay"]));
+    expect(&rounded, 0, "tau = 4");
+    assert!(
+        err(&rounded).contains("--tau 4.2 is rounded to 4"),
+        "{}",
+        err(&rounded)
+    );
+    let law = [
+        "--friction",
+        "weakening",
+        "--mu0=0.5",
+        "--v-s=0.5",
+        "--alpha-n=-10",
+        "--tau=0.5",
+    ];
+    let vc = [&["vc"], &law[..], &["--sample-time=0.1"]].concat();
+    expect(&folder.run(&vc), 2, "sample");
+}
