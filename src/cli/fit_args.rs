@@ -9,9 +9,10 @@ use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::Shown;
 
+use super::assumed_units::units_of;
 use super::failure::Failure;
 use super::output::tell_assumed_units;
-use super::parameter_values::{Values, units_of};
+use super::parameter_values::Values;
 use super::parameters::flag;
 
 /// The flags besides those of parameters.

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand, each thin.
 //!
 //! - `address_space`: limits on memory that the system sets
+//! - `assumed_units`: the units of the numbers that flags give
 //! - `asked`: the setting that a command is asked about: of the block, or of a system from a file
 //! - `asks`: the needs of commands that ask about a point, which determine their flags
 //! - `at`: a place on an axis of a map: `--at AXIS=VALUE`
@@ -75,6 +76,7 @@
 mod address_space;
 mod asked;
 mod asks;
+mod assumed_units;
 mod at;
 mod axis_facts;
 mod basin;

@@ -14,11 +14,12 @@ use crate::text::Shown;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::asks::{Asks, OfSliding};
+use super::assumed_units::units_of;
 use super::failure::Failure;
 use super::formula_args;
 use super::law_args::{LawArgs, law_names};
 use super::output::{tell_assumed_units, warn_beyond_curve, warn_of_idle_delay};
-use super::parameter_values::{Values, units_of};
+use super::parameter_values::Values;
 use super::say;
 use super::sets::SetArgs;
 use super::sweep_file::read_table;
@@ -82,9 +83,8 @@ impl<A: Asks> Args for ParameterArgs<A> {
         let command = command.args(Values::flags(Self::of_law).map(Self::offered));
         let round = Arg::new(ROUND_DELAY)
             .long(ROUND_DELAY)
-            .action(ArgAction::SetTrue)
-            .help("With --sample-time: round delay and latency to whole multiples of it");
-        command.arg(round)
+            .action(ArgAction::SetTrue);
+        command.arg(round.help("With --sample-time: round delay and latency to multiples of it"))
     }
 
     fn augment_args_for_update(command: Command) -> Command {

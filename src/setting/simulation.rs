@@ -52,8 +52,8 @@ pub(super) fn not_in_motions(setting: &Setting, critical: bool) -> Option<(Param
     Some((parameter, message))
 }
 
-/// The keys `horizon`, `tolerance`, `steps` and `seed`, of a case file or of the table `[simulation]` of a
-/// sweep file.
+/// The keys `horizon`, `tolerance`, `steps` and `seed`, of a case file or of the table
+/// `[simulation]` of a sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
     /// The time until which the motion is followed; none for 1000 √(M/κ) after switch-on, or after

@@ -58,8 +58,8 @@ pub struct Limits {
     pub horizon: f64,
     /// The most steps.
     pub steps: u64,
-    /// The spectral abscissa of sliding at the last v0 under the control that acts, if all roots are
-    /// stable.
+    /// The spectral abscissa of sliding at the last v0 under the control that acts, if all roots
+    /// are stable.
     pub stable_abscissa: Option<f64>,
     /// How well cycles have to repeat, relative, to be periodic.
     pub repeated: f64,

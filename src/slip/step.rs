@@ -220,8 +220,8 @@ impl Step {
     }
 }
 
-/// What acts in a step: v = `v0` + `slope` s + `alpha_v` S, s after its start, and n = `load` + `alpha_n` S, and the dashpots. An
-/// actuator at a limit has that limit and no gain.
+/// What acts in a step: v = `v0` + `slope` s + `alpha_v` S, s after its start, n = `load` +
+/// `alpha_n` S, and the dashpots. An actuator at a limit has that limit and no gain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Control {
     pub v0: f64,

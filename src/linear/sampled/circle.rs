@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use super::step::Quadratic;
-use crate::model::elementary::{arg, atan2, exp, expm1};
+use crate::model::elementary::{arg, atan2, exp, expm1, sincos};
 
 /// Rounding errors that the numbers of a junction gather.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
@@ -79,7 +79,7 @@ impl Circle {
 
     /// ζ = z − 1 at an angle.
     pub(super) fn zeta(&self, angle: f64) -> Complex64 {
-        let (sine, cosine) = libm::sincos(0.5 * angle);
+        let (sine, cosine) = sincos(0.5 * angle);
         let imaginary = 2.0 * self.radius * sine * cosine;
         Complex64::new(self.beyond - 2.0 * self.radius * sine * sine, imaginary)
     }

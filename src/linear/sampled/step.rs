@@ -80,6 +80,7 @@ fn product(b: f64, c: [f64; 2], d: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::elementary::{expm1, sin};
 
     /// Without friction e^(Ah) turns the state by h.
     #[test]
@@ -87,7 +88,7 @@ mod tests {
         for h in [1e-9_f64, 0.01, 0.7, 3.0, 40.0] {
             let step = Step::of(Groups::new(0.0, 0.0, 0.0), h);
             let [p0, p1, _] = step.open;
-            let sine = libm::sin(0.5 * h);
+            let sine = sin(0.5 * h);
             let expected = 4.0 * sine * sine;
             assert!((p0 - expected).abs() <= 1e-13 * expected, "{h}");
             assert!((p1 - expected).abs() <= 1e-13 * expected, "{h}");
@@ -99,7 +100,7 @@ mod tests {
     fn the_area_shrinks_by_friction() {
         for (b, h) in [(-0.3_f64, 0.5_f64), (0.9, 2.0), (5.0, 1.0), (-1e-3, 1e-3)] {
             let [p0, p1, p2] = Step::of(Groups::new(b, 0.1, 0.2), h).open;
-            let expected = libm::expm1(-b * h);
+            let expected = expm1(-b * h);
             assert!((p0 - p1 + p2 - 1.0 - expected).abs() < 1e-14, "{b} {h}");
         }
     }
