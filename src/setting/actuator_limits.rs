@@ -1,7 +1,7 @@
 //! Limits of the actuators beside what they limit: v0 and N0 lie within them.
 
 use super::field::Field;
-use super::needs::{FieldsAsked, ReportedAt, Unmet};
+use super::fields_asked::{FieldsAsked, ReportedAt, Unmet};
 use super::parameter::Parameter;
 use super::values::Setting;
 use crate::text::Shown;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::actuator_limits::Excluding;
 use super::amount::units_of;
+use super::fields_asked::{ReportedAt, Unmet};
 use super::fit_errors::{self, FitErrors};
 use super::fit_keys;
 use super::formula_keys::{FormulaKeys, given_twice};
@@ -13,7 +14,7 @@ use super::friction_table::GivenTable;
 use super::given_error::GivenError;
 use super::keys::FRICTION_TABLE;
 use super::law_kind::LawKind;
-use super::needs::{ReportedAt, Unmet, no_motions, two_starts};
+use super::needs::{no_motions, two_starts};
 use super::parameter::Parameter;
 use super::quantity::Quantity;
 use super::sampling::NotSampled;

@@ -12,6 +12,7 @@
 //! - `curve_remark`: remarks on velocities at which a measured friction law says little
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
+//! - `fields_asked`: the fields that are asked for, and where
 //! - `fit_keys`: the keys of what a fit says
 //! - `fit_errors`: standard errors and correlations of a fitted law
 //! - `fitted_sliding`: what they leave open of the slope where the block slides
@@ -67,6 +68,7 @@ pub mod command;
 mod curve_remark;
 mod expression;
 pub mod field;
+mod fields_asked;
 pub mod fit_errors;
 pub(crate) mod fit_keys;
 pub mod fitted_sliding;

@@ -1,7 +1,7 @@
 //! What a digital loop asks of the other parameters: delay and latency are whole multiples of the
 //! sample time, and nothing lags.
 
-use super::needs::{FieldsAsked, ReportedAt, Unmet};
+use super::fields_asked::{FieldsAsked, ReportedAt, Unmet};
 use super::parameter::Parameter;
 use super::values::Setting;
 use crate::linear::sampled::multiple;

@@ -125,8 +125,8 @@ pub(super) struct Solved {
     pub rest: f64,
 }
 
-/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ from the time since then, ẋ, a
-/// and the delayed elongation, whose polynomial is `delayed`. With `rounds_off`, terms that are
+/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ from the time since then, ẋ,
+/// a and the delayed elongation, whose polynomial is `delayed`. With `rounds_off`, terms that are
 /// rounding alone are left out. None where the iteration does not converge.
 pub(super) fn solve(
     (u, a): (f64, f64),
