@@ -173,10 +173,11 @@ pub(super) fn print(
     print_loop(&mut row, margins, units)?;
     if let Some(found) = &margins.stability_box {
         let of = of_what_is_given(setting);
-        row(
-            "stability_radius",
-            radius(margins.stability_radius, found, of),
-        )?;
+        let told = match margins.stability_radius.is_nan() {
+            true => "not known of a digital loop".into(),
+            false => radius(margins.stability_radius, found, of),
+        };
+        row("stability_radius", told)?;
     }
     if let Some(fit) = &margins.fit {
         row("fit", of_fit(fit, margins, units))?;

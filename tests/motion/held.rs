@@ -306,15 +306,15 @@ fn mistakes_in_readings_are_named() {
     for (line, says) in [
         (
             "tau = 0.52",
-            "tau = 0.52 is outside its range: a whole multiple",
+            "tau = 0.52 is no whole multiple of sample_time",
         ),
         (
             "latency = 0.07",
-            "latency = 0.07 is outside its range: 0 or a whole",
+            "latency = 0.07 is no whole multiple of sample_time",
         ),
         (
             "sample_time = 0",
-            "noise = 0.02 is outside its range: 0 without sample_time",
+            "noise = 0.02 is of readings, and there are none",
         ),
         ("noise = -1", "noise"),
     ] {

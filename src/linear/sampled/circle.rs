@@ -36,7 +36,8 @@ pub(super) struct Junction {
     pub phase: f64,
     /// A bound on its error.
     pub phase_error: f64,
-    /// Half of what the number of zeros outside the circle changes by where a pair passes it.
+    /// Half of what the number of zeros outside the circle changes by where a pair passes it; 0
+    /// where |U| and |V| only come near to one another.
     pub sign: i8,
 }
 

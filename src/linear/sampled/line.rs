@@ -97,7 +97,8 @@ impl SampledLoop {
     fn crossing(&self, junction: &Junction) -> Crossing {
         let direction = match junction.sign {
             1 => Direction::Right,
-            _ => Direction::Left,
+            -1 => Direction::Left,
+            _ => Direction::Touch,
         };
         Crossing::with_errors(
             junction.angle / self.sample_time,

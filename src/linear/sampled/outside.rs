@@ -123,7 +123,7 @@ impl SampledLoop {
         };
         let search = Search { to, precision: 0.0 };
         zeros_from(&gap, here, search, &mut { MOST_STEPS }, |switch| {
-            if switch.omega < to && switch.sign != 0 {
+            if switch.omega < to {
                 let [u, v] = gap.sides(switch.omega);
                 let size = u.norm_sqr().sqrt();
                 visit(Junction {
