@@ -32,8 +32,7 @@ pub(super) struct CaseFacts {
     #[schema(value_type = BTreeMap<String, String>)]
     units: Vec<(&'static str, String)>,
     start: StartFacts,
-    /// The pulling velocity in time; left out where it stays what it is.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// The pulling velocity in time; empty where it stays what it is.
     programme: Vec<CornerFacts>,
     /// When control is switched on; null where it never is, or at a phase of stick-slip.
     #[schema(required)]

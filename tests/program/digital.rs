@@ -124,6 +124,7 @@ fn noise_is_that_of_the_seed() {
             "--tau=4.2",
             "--sample-time=0.14",
             "--json",
+            "--fresh",
         ];
         out(&folder.run(&[&law[..], &digital, &[&seed, &noise]].concat()))
     };
