@@ -27,8 +27,10 @@
 //! - `advance`: one step after the other: its length and its end
 //! - `collocated`: steps by collocation: how long they are, the rates there
 //! - `continued`: a motion that goes on from others: copies, extrapolation
+//! - `course`: the corners of a programme of v0, and which of them are behind
 //! - `events`: zeros of a step's polynomials, told apart from rounding
 //! - `held`: where a signal is beside the values at which actuators reach their limits
+//! - `held_signal`: readings, and what is held from one of them to the next
 //! - `sampled`: steps between readings of a digital loop
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy
 //! - `programmed`: v0 that follows a programme
@@ -39,9 +41,11 @@ mod actuators;
 mod advance;
 mod collocated;
 mod continued;
+mod course;
 mod events;
 mod feedback;
 mod held;
+mod held_signal;
 mod parameters;
 mod programmed;
 mod sampled;
@@ -50,10 +54,10 @@ mod taylor;
 
 use super::collocation::NODES;
 use crate::model::law::FrictionSeries;
+use course::Course;
 use held::Held;
+use held_signal::Sampled;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
-use programmed::Course;
-use sampled::Sampled;
 
 use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};

@@ -3,32 +3,10 @@
 //! v0 is linear in time within a step, and steps end on corners. There a has a kink: its first
 //! derivative jumps with v0, its second one with the slope of v0.
 
+use super::course::Course;
 use super::{Event, Mode, Motion};
 use crate::slip::history::SMOOTH;
 use crate::slip::programme::Corner;
-
-/// Where v0 is on its way, in the units of a motion.
-#[derive(Debug, Clone)]
-pub(super) struct Course {
-    corners: Box<[Corner]>,
-    /// The index of the corner ahead.
-    ahead: usize,
-    /// The time of the last corner, or 0, and v0 from then on.
-    from: (f64, f64),
-}
-
-impl Course {
-    /// The time of the corner ahead; +∞ where there is none.
-    fn next(&self) -> f64 {
-        self.corners.get(self.ahead).map_or(f64::INFINITY, |c| c.at)
-    }
-
-    /// The slope of v0 until the corner ahead.
-    fn slope(&self) -> f64 {
-        let ahead = self.corners.get(self.ahead);
-        ahead.map_or(0.0, |corner| corner.slope_from(self.from))
-    }
-}
 
 impl Motion {
     /// From t = 0, which is now, v0 follows these corners, of times that increase from 0 on.

@@ -5,16 +5,14 @@
 //! dashpot beside the spring its pull as well. What the jump tears off, or lifts off, is told as an
 //! event that ends a step of no length.
 
+use super::held_signal::LEAST;
 use super::{Event, Integrator, Mode, Motion, Parameters};
+use crate::model::Feedback;
 use crate::model::elementary::power;
 use crate::model::series::spread;
-use crate::model::{Channel, Feedback};
 use crate::slip::history::SMOOTH;
-use crate::slip::readings::Sampler;
 use crate::slip::step::Control;
 
-/// The lowest order of a step: near sliding it moves next to nothing from one reading to the next.
-const LEAST: usize = 2;
 /// Steps end long before their series do, so terms fall fast: the last one has to be below the
 /// tolerance, and the one before it below so many times the tolerance.
 const BEFORE_LAST: f64 = 10.0;
@@ -22,55 +20,6 @@ const BEFORE_LAST: f64 = 10.0;
 const SPARE: f64 = 0.1;
 /// How many terms more a step gets whose last ones exceed the tolerance.
 const MORE: usize = 2;
-
-/// The readings of a motion, and what is held of them.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Sampled {
-    sampler: Sampler,
-    /// S, v and N.
-    signal: f64,
-    velocity: f64,
-    load: f64,
-    /// The slope of v on a ramp of v0, and how long v follows it or stays at a limit.
-    slope: f64,
-    lasts: f64,
-    /// The order that the last step needed.
-    order: usize,
-}
-
-impl Sampled {
-    /// Begins anew, with the elongation `known` up to t = 0, which does not vary before `since`.
-    /// Takes memory and latency out of the parameters: readings have them.
-    pub(super) fn restart(
-        &mut self,
-        parameters: &mut Parameters,
-        since: f64,
-        known: impl Fn(f64) -> f64,
-    ) {
-        let (feedback, switch_on) = (&parameters.feedback, parameters.switch_on);
-        self.sampler
-            .restart(feedback, switch_on, [since, 0.0], known);
-        self.order = LEAST;
-        (self.signal, self.velocity, self.load) = (0.0, parameters.v0, 1.0);
-        (self.slope, self.lasts) = (0.0, f64::INFINITY);
-        if self.acts() {
-            parameters.feedback.channel = Channel::default();
-        }
-    }
-
-    /// Whether readings are held.
-    pub(super) fn acts(&self) -> bool {
-        self.sampler.acts()
-    }
-
-    /// Becomes a copy of `other` in the memory that it has.
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        self.sampler.copy_from(&other.sampler);
-        (self.signal, self.order) = (other.signal, other.order);
-        (self.velocity, self.load) = (other.velocity, other.load);
-        (self.slope, self.lasts) = (other.slope, other.lasts);
-    }
-}
 
 impl Motion {
     /// Whether the feedback is read at equal times and held in between.
