@@ -174,7 +174,7 @@ pub(super) fn print(
     if let Some(found) = &margins.stability_box {
         let of = of_what_is_given(setting);
         let told = match margins.stability_radius.is_nan() {
-            true => "not known of a digital loop".into(),
+            true => "not decided".into(),
             false => radius(margins.stability_radius, found, of),
         };
         row("stability_radius", told)?;

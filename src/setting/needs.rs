@@ -318,6 +318,7 @@ fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
             ("it is known of the letter's parameters alone", OTHERS)
         }
         Source::Linear(OfLinear::StiffnessRatio) => ("it is of the rate-and-state law", OTHERS),
+        Source::Roots(OfRoots::SpectralRadius) => ("it is of a digital loop", OTHERS),
         Source::Margins(OfMargins::Latency) if !model.is_feedback() => (
             "the system has no latency",
             "a system of B and A has one, one of P and Q has not",

@@ -4,7 +4,7 @@
 use super::fields_asked::{FieldsAsked, ReportedAt, Unmet};
 use super::parameter::Parameter;
 use super::values::Setting;
-use crate::linear::sampled::multiple;
+use crate::linear::sampled::{MOST_SAMPLES, multiple};
 use crate::model::ModelError;
 use crate::text::Shown;
 
@@ -31,6 +31,8 @@ enum Why {
     Shorter(f64),
     /// It is no whole multiple of this sample time.
     Between(f64),
+    /// It has more samples of this time than are counted.
+    TooMany(f64),
 }
 
 impl NotSampled {
@@ -60,9 +62,12 @@ impl NotSampled {
             let time = value(parameter);
             let absent = time.is_nan() || (parameter == Parameter::Latency && time == 0.0);
             if !absent && multiple(time, sample_time).is_none() {
-                let why = match time < sample_time {
-                    true => Why::Shorter(sample_time),
-                    false => Why::Between(sample_time),
+                let why = match time / sample_time {
+                    samples if samples < 1.0 && parameter == Parameter::Tau => {
+                        Why::Shorter(sample_time)
+                    }
+                    samples if samples > MOST_SAMPLES => Why::TooMany(sample_time),
+                    _ => Why::Between(sample_time),
                 };
                 return found(parameter, why);
             }
@@ -96,6 +101,9 @@ impl NotSampled {
             Why::Between(sample_time) => {
                 format!("{given} is no whole multiple of {}", of(sample_time))
             }
+            Why::TooMany(sample_time) => {
+                format!("{given} has more than 1e9 samples of {}", of(sample_time))
+            }
         }
     }
 
@@ -110,6 +118,11 @@ impl NotSampled {
             Why::Shorter(sample_time) => {
                 format!("a sample takes its time: {} or more", Shown(sample_time))
             }
+            Why::TooMany(_) => format!(
+                "give {} = {} or more",
+                name(Parameter::SampleTime),
+                Shown(self.value / MOST_SAMPLES)
+            ),
             Why::Between(sample_time) => {
                 let below = (self.value / sample_time).floor() * sample_time;
                 let [below, above] = [below, below + sample_time].map(Shown);
@@ -150,7 +163,8 @@ impl Setting {
         for (parameter, least) in [(Parameter::Tau, 1.0), (Parameter::Latency, 0.0)] {
             let value = self.get(parameter);
             let whole = multiple(value, sample_time).is_some() || value == 0.0;
-            if self.feedback().is_sampled() && !whole && value >= least * sample_time {
+            let samples = value / sample_time;
+            if self.feedback().is_sampled() && !whole && (least..MOST_SAMPLES).contains(&samples) {
                 let rounded = (value / sample_time).round() * sample_time;
                 self.set(parameter, rounded);
                 changed.push((parameter, value));

@@ -16,6 +16,8 @@ use crate::model::{Channel, Feedback, ModelError, Readings};
 
 /// The most readings that a delay or a latency may span: 8 MB each.
 const MOST_READINGS: u64 = 1_000_000;
+/// More readings than any motion has.
+const LONGEST: i64 = 1 << 60;
 /// Memory that has faded to this share of what was fed back is forgotten.
 const FADED: f64 = 1e-17;
 
@@ -179,10 +181,11 @@ impl Sampler {
     /// How many readings ago what was fed back has faded.
     fn remembered(&self) -> i64 {
         let memory = self.channel.memory.abs();
-        match memory == 0.0 {
-            true => 0,
-            false => (ln(FADED) / ln(memory)).ceil() as i64 * self.delay as i64,
+        if memory == 0.0 {
+            return 0;
         }
+        let delays = (ln(FADED) / ln(memory)).ceil() as i64;
+        delays.saturating_mul(self.delay as i64).min(LONGEST)
     }
 
     /// The time of reading `number`.

@@ -386,3 +386,50 @@ fn phase_margins_are_those_of_the_loop() {
         assert!((least - found).abs() < 1e-3, "{groups:?}: {found} {least}");
     }
 }
+
+/// Every root is listed once, pairs by their frequency in [0, π/h], and none is missing.
+#[test]
+fn roots_are_listed_once() {
+    for i in 0..300 {
+        let sampled = Sampled::random(&mut Chance(9000 + i), i % 3 != 0);
+        if sampled.h > 1.0 || sampled.m < 3 {
+            continue;
+        }
+        let (model, tau) = (sampled.model(), sampled.m as f64 * sampled.h);
+        let spectrum = SampledRoots::new(model).spectrum(tau, 6);
+        assert!(spectrum.missing.is_none(), "{sampled:?}");
+        let sizes = sampled.sizes();
+        let mut expected = sizes.iter();
+        for root in &spectrum.roots {
+            let (size, angle) = (
+                (root.lambda.re * sampled.h).exp(),
+                root.lambda.im * sampled.h,
+            );
+            assert!(
+                (0.0..=std::f64::consts::PI).contains(&angle),
+                "{sampled:?} {angle}"
+            );
+            let alone = angle == 0.0 || angle == std::f64::consts::PI;
+            for _ in 0..if alone { 1 } else { 2 } {
+                let one = expected.next().unwrap();
+                assert!(
+                    (one - size).abs() < 1e-5 * one,
+                    "{sampled:?} {size} {sizes:?}"
+                );
+            }
+        }
+    }
+}
+
+/// An undamped block that makes whole half turns between readings is not told to be stable.
+#[test]
+fn half_turns_between_readings_are_not_decided() {
+    use std::f64::consts::PI;
+    for (h, m, a_v) in [(PI, 3, -1.8361155619348941), (2.0 * PI, 1, -0.111)] {
+        let groups = Groups::new(0.0, a_v, 0.0);
+        let of_loop = SampledLoop::new(groups, Channel::default(), h).unwrap();
+        let roots = SampledRoots::new(of_loop);
+        assert!(roots.count(f64::from(m) * h, 1.0).is_none());
+        assert!(!roots.spectrum(f64::from(m) * h, 1).certified);
+    }
+}

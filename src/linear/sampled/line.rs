@@ -83,7 +83,7 @@ impl SampledLoop {
                 line.crossings.push(crossing);
             }
         });
-        line.uncounted = listed == Err(TooMany);
+        line.uncounted = listed == Err(TooMany) || !self.is_told_apart();
         line.crossings
             .sort_by(|one, other| other.omega.total_cmp(&one.omega));
         SampledLine {
@@ -92,6 +92,16 @@ impl SampledLoop {
             sample_time: self.sample_time * time_unit,
             stable: OnceCell::new(),
         }
+    }
+
+    /// Whether rounding leaves the block its own zeros: not where all is lost in the growth of one
+    /// sample, nor where an undamped block makes whole half turns from reading to reading.
+    fn is_told_apart(&self) -> bool {
+        let mut coefficients = self.step.open.iter().chain(&self.step.held);
+        let finite = coefficients.all(|c| (c * c).is_finite());
+        let angle = self.open_angle();
+        let half_turns = self.groups.b.abs() < SAME && angle.min((PI - angle).abs()) < SAME;
+        finite && !(half_turns && self.sample_time > 1.0)
     }
 
     fn crossing(&self, junction: &Junction) -> Crossing {

@@ -278,6 +278,11 @@ impl SampledLoop {
         }
     }
 
+    /// The loop without its latency.
+    fn without_latency(&self) -> Self {
+        Self { late: 0, ..*self }
+    }
+
     /// Whether the loop is stable at a delay of `multiple` samples, beyond doubt.
     #[must_use]
     pub fn is_stable(&self, multiple: u64) -> bool {
@@ -304,9 +309,15 @@ impl SampledLoop {
     /// Phase and latency margins; the latency in units of √(M/κ).
     #[must_use]
     pub fn loop_margins(&self, multiple: u64) -> LoopMargins {
-        let latency = self.latency_margin(multiple);
+        let phase = self.phase_margin(multiple);
+        // Where |L| is 1 nowhere, no latency loses stability.
+        let endless = phase == f64::INFINITY && self.without_latency().is_stable(multiple);
+        let latency = match endless {
+            true => None,
+            false => self.latency_margin(multiple),
+        };
         LoopMargins {
-            phase: self.phase_margin(multiple),
+            phase,
             latency: latency.map_or(f64::INFINITY, |samples| samples as f64 * self.sample_time),
         }
     }

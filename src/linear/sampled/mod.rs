@@ -37,8 +37,8 @@ pub use line::{SampledLine, multiple};
 pub use roots::SampledRoots;
 use step::Step;
 
-/// Samples in a delay or latency that are told apart.
-const MOST_SAMPLES: f64 = 1e9;
+/// The most samples in a delay or a latency.
+pub const MOST_SAMPLES: f64 = 1e9;
 
 /// The dimensionless linear model of a digital loop.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@
 //! it. A zero on the circle of that size lies at an angle at which |U| = |V| there, or on the real
 //! axis; Newton's method in λh = ln z does the rest.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
@@ -131,7 +131,7 @@ impl SampledLoop {
             let error = rounding / norm(slope) + f64::EPSILON * norm(log);
             if size <= error || (size >= last && size <= 1e-9 * norm(log).max(1e-300)) {
                 return Some(Zero {
-                    log,
+                    log: folded(log),
                     error: error.max(size),
                 });
             }
@@ -180,6 +180,12 @@ impl SampledLoop {
         let far = norm(zeta);
         c0.abs() + (c1.abs() + c2.abs() * far) * far
     }
+}
+
+/// The logarithm of the same zero, or of its conjugate, with an angle in [0, π].
+fn folded(log: Complex64) -> Complex64 {
+    let turns = (log.im / TAU).round();
+    Complex64::new(log.re, (log.im - TAU * turns).abs())
 }
 
 /// e^`log` − 1, exact where `log` is small.

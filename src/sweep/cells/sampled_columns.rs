@@ -63,7 +63,7 @@ fn count(
         if let Some(n) = &mut buffers.n_unstable {
             n[place] = super::buffers::N_UNSTABLE_FILL;
         }
-        return if line.crossings_known() {
+        return if line.delays_known() {
             OUTSIDE_MODEL
         } else {
             NOT_CONVERGED
