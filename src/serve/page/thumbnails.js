@@ -66,7 +66,7 @@ export class Thumbnails {
       if (this.underWay === AT_A_TIME) return;
       this.waiting.delete(id);
       const known = this.known.get(id);
-      if (!known || known.made === known.version || !(known.map.axes ?? []).length) continue;
+      if (!known || known.made === known.version || !this.#hasPicture(known.map)) continue;
       if (performance.now() - known.at < AGAIN) {
         this.#later(known);
         continue;
@@ -83,6 +83,11 @@ export class Thumbnails {
           this.#next();
         });
     }
+  }
+
+  /** Whether a map has anything to be seen: one that has just begun is looked at when it has cells. */
+  #hasPicture({ axes, cells_done: done }) {
+    return (axes ?? []).length > 0 && done !== 0;
   }
 
   /** Tries again if it is in sight then. */
