@@ -12,10 +12,11 @@ use crate::model::elementary::pow;
 use crate::model::stop::Stop;
 use crate::setting::regime_at_v0::RegimeAtV0;
 use crate::setting::search::Protocol;
-use crate::setting::simulation::NOT_IN_CRITICAL;
+use crate::setting::simulation::NOT_IN_MOTIONS;
 use crate::setting::values::Setting;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
+use crate::slip::readings::check as check_readings;
 
 /// Error allowed in a step when control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
@@ -53,7 +54,7 @@ impl VcProblem {
     /// When the setting has no friction law, or a value is outside the model's range: a gain needs
     /// a delay τ > 0.
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
-        setting.check_of_letter(NOT_IN_CRITICAL, "0 where a critical velocity is looked for")?;
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
         let oscillator = setting.oscillator()?;
         let units = CaseUnits::of(&oscillator);
         let Some(law) = setting.friction_law()? else {
@@ -67,6 +68,7 @@ impl VcProblem {
             "greater than 0 where a gain acts",
             tau > 0.0 || !feedback.gains.act(),
         )?;
+        check_readings(&feedback)?;
         let problem = Problem {
             velocity_unit: units.velocity,
             dashpots: oscillator.dashpot_ratios(),
@@ -115,7 +117,7 @@ impl VcProblem {
             ..Accuracy::of(SWITCH_ON_ACCURACY)
         };
         let phase = in_motion_units(phase, units);
-        let steps = MORE_STEPS * Scan::default().steps;
+        let steps = MORE_STEPS * Scan::default().within(problem).steps;
         let mut trials = Trials::new(problem, phase, accuracy, steps);
         let speed = vc / units.velocity;
         [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
@@ -186,7 +188,7 @@ impl VcProblem {
             Protocol::SwitchOn(phase) => {
                 let phase = in_motion_units(phase, units);
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
-                let steps = Scan::default().steps;
+                let steps = Scan::default().within(problem).steps;
                 match Trials::new(problem, phase, accuracy, steps).at(speed) {
                     Regime::Periodic | Regime::Irregular => RegimeAtV0::Bistable,
                     Regime::Ended | Regime::Slips | Regime::NoStickSlip => RegimeAtV0::Stable,

@@ -35,6 +35,11 @@ pub(super) fn from_scratch(problem: &Problem) -> Found<'_> {
         let critical = CriticalVelocity::nothing(f64::NAN, persists, Method::Simulation);
         return (bounded(problem, critical, Vec::new(), &[]), None);
     }
+    if problem.feedback.is_sampled() {
+        // The return map knows no readings.
+        let (critical, searches) = simulated(problem);
+        return (bounded(problem, critical, searches, &[]), None);
+    }
     let found = problem.at_first_start(|v0| from_start(problem, v0));
     found.unwrap_or_else(|| {
         let (critical, searches) = simulated(problem);

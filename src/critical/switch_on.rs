@@ -10,6 +10,9 @@ use crate::slip::motion::{Accuracy, Motion};
 use crate::slip::outcome::{Limits, Outcome};
 use crate::slip::watch::follow;
 
+/// How many times as many steps a motion may take whose readings are held.
+const STEPS_OF_READINGS: u64 = 20;
+
 /// When control is switched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Phase {
@@ -53,14 +56,21 @@ impl Default for Scan {
 }
 
 impl Scan {
-    /// This scan without velocities beyond the limits of v of `problem`.
+    /// This scan without velocities beyond the limits of v of `problem`, and with more steps where
+    /// every reading takes one.
     #[must_use]
     pub fn within(self, problem: &Problem) -> Self {
         let [least, most] = problem.feedback.limits.velocity;
         let unit = problem.law.mu_s();
+        let more = match problem.feedback.is_sampled() {
+            true => STEPS_OF_READINGS,
+            false => 1,
+        };
         Self {
             v_min: self.v_min.max(least / unit),
             v_max: self.v_max.min(most / unit),
+            steps: more * self.steps,
+            total_steps: more * self.total_steps,
             ..self
         }
     }

@@ -64,9 +64,9 @@ const NEEDS: [Need; 21] = [
     need(Stage::Model, of_motions, |asked, _| {
         no_motions(asked.fixed.law()?)
     }),
-    need(Stage::Model, of_motions, |asked, field| {
+    need(Stage::Model, of_motions, |asked, _| {
         let most = most(asked.fixed, asked.axes);
-        let (parameter, message) = not_in_motions(&most, field.of_vc())?;
+        let (parameter, message) = not_in_motions(&most)?;
         Some(ReportedAt::Parameter(parameter).refuse(message, LINEAR))
     }),
     need(

@@ -31,24 +31,10 @@ pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::SensorLag,
 ];
 
-/// What asks for a critical velocity has no readings that are held, nor what motions lack.
-pub(crate) const NOT_IN_CRITICAL: &[Parameter] = &[
-    Parameter::SampleTime,
-    Parameter::LoadLag,
-    Parameter::VelocityLag,
-    Parameter::SensorLag,
-];
-
-/// The first parameter of a setting that motions do not know, or the search for a critical velocity
-/// where that is asked for, and a message that says so.
-pub(super) fn not_in_motions(setting: &Setting, critical: bool) -> Option<(Parameter, String)> {
-    let known = [NOT_IN_MOTIONS, NOT_IN_CRITICAL][usize::from(critical)];
-    let parameter = setting.beyond_letter(known)?;
-    let what = match parameter {
-        Parameter::SampleTime => "critical velocities",
-        _ => "motions",
-    };
-    let message = format!("{} is not known to {what}", parameter.name());
+/// The first parameter of a setting that motions do not know, and a message that says so.
+pub(super) fn not_in_motions(setting: &Setting) -> Option<(Parameter, String)> {
+    let parameter = setting.beyond_letter(NOT_IN_MOTIONS)?;
+    let message = format!("{} is not known to motions", parameter.name());
     Some((parameter, message))
 }
 

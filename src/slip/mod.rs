@@ -25,7 +25,7 @@ mod history;
 pub mod motion;
 pub mod outcome;
 pub mod programme;
-mod readings;
+pub(crate) mod readings;
 pub mod sliding;
 pub mod speeds;
 mod steady;

@@ -233,6 +233,12 @@ impl Motion {
         self.even_since = f64::INFINITY;
         self.held = Held::default();
         (self.kink, self.signal_kink) = (2, 2);
+        if self.is_sampled() {
+            self.parameters.feedback = self.feedback();
+            let rising = |t: f64| a + v0 * t;
+            self.sampled
+                .restart(&mut self.parameters, f64::NEG_INFINITY, rising);
+        }
     }
 
     /// Changes v0 from now on.

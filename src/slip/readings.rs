@@ -23,7 +23,7 @@ const FADED: f64 = 1e-17;
 
 /// Checks the readings of a feedback, and that its delay and latency are whole multiples of the
 /// time between them.
-pub(super) fn check(feedback: &Feedback) -> Result<(), ModelError> {
+pub(crate) fn check(feedback: &Feedback) -> Result<(), ModelError> {
     let Feedback {
         tau,
         channel: Channel { latency, .. },

@@ -8,10 +8,14 @@ use std::sync::Arc;
 
 use crate::chance::Chance;
 use crate::signal::{samples, slope};
+use slipmap::answers::vc::VcProblem;
+use slipmap::critical::switch_on::Phase;
 use slipmap::explore::basin::Followed;
 use slipmap::model::{Channel, Dashpots, Feedback, FrictionLaw, Readings};
-use slipmap::setting::CaseSpec;
 use slipmap::setting::basin::Basin;
+use slipmap::setting::law_kind::LawKind;
+use slipmap::setting::search::Protocol;
+use slipmap::setting::{CaseSpec, Parameter, Setting};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Event, Integrator, Motion, Parameters};
 use slipmap::slip::outcome::{Limits, Outcome, Summary};
@@ -327,4 +331,60 @@ fn mistakes_in_readings_are_named() {
     }
     let error = format!("seed = -1\n{}", &NOISY[9..]).parse::<CaseSpec>();
     assert!(error.unwrap_err().message.contains("seed"));
+}
+
+/// The critical velocity of the letter's Fig. 3 (b) with this parameter beside.
+fn critical_velocity(beside: (&'static str, f64), protocol: Protocol) -> [f64; 3] {
+    let numbers = [
+        ("mu0", 0.5),
+        ("v_s", 0.5),
+        ("alpha_n", -10.0),
+        ("tau", 0.5),
+        beside,
+    ];
+    let law = LawKind::named("weakening").unwrap();
+    let setting = Setting::checked(numbers, Some(law), &[Parameter::V0]).unwrap();
+    let found = VcProblem::of(&setting).unwrap().find(protocol).critical;
+    [found.vc_lower, found.vc, found.vc_upper]
+}
+
+/// Held readings are a latency of h/2, to second order: critical velocities of held motions, found
+/// by simulation, against those of the return map with a latency.
+#[test]
+fn critical_velocities_are_those_of_half_a_sample_of_latency() {
+    let with_latency = |h: f64| critical_velocity(("latency", 0.5 * h), Protocol::Follow)[1];
+    let switched_on = Protocol::SwitchOn(Phase::After(0.0));
+    let apart = [0.05, 0.025].map(|h| {
+        let [_, vc, _] = critical_velocity(("sample_time", h), switched_on);
+        (vc / with_latency(h) - 1.0).abs()
+    });
+    let order = (apart[0] / apart[1]).log2();
+    assert!(apart[1] < 1e-3 && (order - 2.0).abs() < 0.4, "{apart:?}");
+    // While v0 is raised stick-slip may be lost by chance, since readings drift against its cycle.
+    for h in [0.1, 0.025] {
+        let [lower, _, upper] = critical_velocity(("sample_time", h), Protocol::Follow);
+        let vc = with_latency(h);
+        assert!(
+            lower < 1.01 * vc && 0.99 * vc < upper,
+            "{h}: {lower} {vc} {upper}"
+        );
+        assert!(upper < 1.12 * lower, "{h}: {lower} {upper}");
+    }
+}
+
+#[test]
+fn a_critical_velocity_needs_whole_samples() {
+    let law = LawKind::named("weakening").unwrap();
+    let numbers = [
+        ("mu0", 0.5),
+        ("v_s", 0.5),
+        ("alpha_n", -10.0),
+        ("tau", 0.5),
+        ("sample_time", 0.5),
+    ];
+    let mut setting = Setting::checked(numbers, Some(law), &[Parameter::V0]).unwrap();
+    assert!(VcProblem::of(&setting).is_ok());
+    setting.set(Parameter::Tau, 0.7);
+    let error = VcProblem::of(&setting).unwrap_err();
+    assert_eq!(error.parameter, "tau", "{error}");
 }
