@@ -19,8 +19,8 @@ use crate::setting::quantity::Quantity;
 use crate::setting::system::Evaluation;
 use crate::setting::values::Setting;
 
-/// What a sample time has to be where best settings are searched: the plane has every delay.
-const NOT_SEARCHED: &str = "0 where best settings are searched";
+/// What a sample time has to be where robust settings are searched.
+const NOT_ROBUST: &str = "0 where a robust setting is searched (robust): leave one of them out";
 /// Largest |b| for which best settings are searched.
 const STEEPEST: f64 = 1e4;
 
@@ -71,8 +71,8 @@ pub struct BestSettings {
 }
 
 /// Converts dimensionless gains and delays to physical ones. Systems from files are as they are.
-struct Scales {
-    gain: f64,
+pub(super) struct Scales {
+    pub(super) gain: f64,
     time: f64,
 }
 
@@ -104,7 +104,7 @@ impl Scales {
     }
 }
 
-fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
+pub(super) fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
     (from * by, to * by)
 }
 
@@ -177,7 +177,7 @@ fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
 
 /// The family of `setting` with the letter's own feedback. It is an error if |b| is so large that
 /// no search resolves the delays of the optima.
-fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
+pub(super) fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
     let (oscillator, sliding) = (setting.oscillator()?, setting.sliding_point()?);
     let family = Letter::of(&oscillator, sliding, setting.control(), gain);
     let dashpots = family.dashpots.sum();
@@ -203,7 +203,7 @@ fn letter(setting: &Setting, gain: SearchedGain) -> Result<Letter, ModelError> {
 }
 
 /// A copy of `setting` in which what is searched acts.
-fn acting(setting: &Setting, searched: &Quantity) -> Setting {
+pub(super) fn acting(setting: &Setting, searched: &Quantity) -> Setting {
     let mut acting = setting.clone();
     acting.vary(searched, 1.0);
     acting
@@ -236,8 +236,13 @@ pub fn best_settings(
     ranges: &Ranges,
     stop: &Stop,
 ) -> Result<BestSettings, NoAnswer> {
-    setting.check_continuous(NOT_SEARCHED)?;
     let scales = Scales::of(setting, searched)?;
+    if let Some(gain) = gain_of(searched)
+        && acting(setting, searched).feedback().is_sampled()
+    {
+        let found = scales.best_of_samples(setting, gain, ranges, stop)?;
+        return Ok(scales.settings(&found, ranges));
+    }
     let letter = gain_of(searched).map(|gain| letter(setting, gain));
     let found = scales.best(letter.transpose()?, setting, searched, ranges, stop)?;
     Ok(scales.settings(&found, ranges))
@@ -269,8 +274,8 @@ pub fn robust_setting(
     spread: Changes,
     stop: &Stop,
 ) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
-    setting.check_continuous(NOT_SEARCHED)?;
     let searched = parameter_of(gain).into();
+    acting(setting, &searched).check_continuous(NOT_ROBUST)?;
     let scales = Scales::of(setting, &searched)?;
     setting.check_of_letter(&[], "")?;
     let letter = letter(setting, gain)?;

@@ -3,6 +3,7 @@
 //! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
 //!   sequence, followed and counted
 //! - `best`: best settings in physical units, the ranges searched by default
+//! - `best_of_samples`: best settings of a digital loop
 //! - `drawn_laws`: the laws that a fit allows, and for which of them a setting is stable
 //! - `margins`: margins of a setting, in its own units
 //! - `robust_to_fit`: the setting that is most robust against the errors of a fit
@@ -15,6 +16,7 @@
 
 pub mod basin;
 pub mod best;
+mod best_of_samples;
 pub mod drawn_laws;
 pub mod margins;
 pub mod robust_to_fit;

@@ -101,8 +101,9 @@ impl Searched {
                 "{name} is not searched, but {gains} and tau"
             )));
         }
-        // Friction with a state has best settings, but no robust ones.
-        let robust = of_block && spec.fixed.rate_and_state().is_none();
+        // Friction with a state and digital loops have best settings, but no robust ones.
+        let is_read = spec.fixed.get(Parameter::SampleTime) > 0.0;
+        let robust = of_block && !is_read && spec.fixed.rate_and_state().is_none();
         Ok(Self {
             setting: spec.fixed.clone(),
             units: spec.units.clone(),

@@ -125,11 +125,16 @@ impl NotSampled {
             ),
             Why::Between(sample_time) => {
                 let below = (self.value / sample_time).floor() * sample_time;
-                let [below, above] = [below, below + sample_time].map(Shown);
+                let [below, above] = [below, below + sample_time].map(|time| Shown(tidy(time)));
                 format!("the nearest ones are {below} and {above}")
             }
         }
     }
+}
+
+/// A time without the last digits, which are the rounding of a product and need not be typed.
+fn tidy(time: f64) -> f64 {
+    format!("{time:.11e}").parse().unwrap_or(time)
 }
 
 /// The error of a parameter with one value, or of a delay, that does not go with a sample time of

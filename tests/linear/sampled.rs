@@ -5,10 +5,11 @@ use num_complex::Complex64;
 
 use crate::chance::{Chance, asked};
 use slipmap::linear::MarginalTolerance;
+use slipmap::linear::best::{Kind, SampledPlane};
 use slipmap::linear::general::RightOf;
 use slipmap::linear::line::{Line, Linear, Roots};
 use slipmap::linear::margins::Limits;
-use slipmap::linear::sampled::{SampledLoop, SampledRoots};
+use slipmap::linear::sampled::{GainLine, SampledLoop, SampledRoots};
 use slipmap::model::stop::Stop;
 use slipmap::model::{Channel, Groups};
 
@@ -430,4 +431,135 @@ fn half_turns_between_readings_are_not_decided() {
         assert!(roots.count(f64::from(m) * h, 1.0).is_none());
         assert!(!roots.spectrum(f64::from(m) * h, 1).certified);
     }
+}
+
+/// A plane of gains from `gains` and of up to `multiples` samples around a loop.
+struct Plane {
+    of: Sampled,
+    velocity: bool,
+    gains: (f64, f64),
+    multiples: u64,
+}
+
+impl Plane {
+    fn random(chance: &mut Chance, simple: bool) -> Self {
+        let velocity = chance.unit() < 0.5;
+        let most = if velocity { 1.5 } else { 6.0 };
+        let mut of = Sampled::random(chance, simple);
+        of.h = 0.15 + 0.6 * chance.unit();
+        of.late = of.late.min(3);
+        of.groups.b = -of.groups.b.abs().min(0.6);
+        Self {
+            of,
+            velocity,
+            gains: (-most, most),
+            multiples: 14,
+        }
+    }
+
+    fn at(&self, gain: f64, m: u64) -> Sampled {
+        let mut of = Sampled { m, ..self.of };
+        match self.velocity {
+            true => of.groups.a_v = gain,
+            false => of.groups.a_n = gain,
+        }
+        of
+    }
+
+    /// The abscissa of a place by eigenvalues.
+    fn abscissa(&self, gain: f64, m: u64) -> f64 {
+        let of = self.at(gain, m);
+        of.sizes()[0].ln() / of.h
+    }
+
+    fn search(&self) -> SampledPlane {
+        let [without, one] = [0.0, 1.0].map(|gain| self.at(gain, 1).model());
+        SampledPlane {
+            loops: GainLine::through(without, &one),
+            gains: self.gains,
+            multiples: (1, self.multiples),
+        }
+    }
+}
+
+/// Best settings against eigenvalues: no place of a grid, and none near, decays faster; stable
+/// places lie in regions, and the region of a place has its own stable gains.
+#[test]
+fn no_setting_decays_faster_than_the_best() {
+    let mut chance = Chance(23);
+    for number in 0..asked("SLIPMAP_SAMPLED", 600) / 20 {
+        let plane = Plane::random(&mut chance, number % 2 == 0);
+        let (h, search) = (plane.of.h, plane.search());
+        let found = search.best(&Stop::default());
+        let best = &found.overall;
+        let m = (best.tau / h).round() as u64;
+        let there = plane.abscissa(best.gain, m);
+        // Multiple roots are known to the root of rounding.
+        let near = 1e-5 * (1.0 + there.abs());
+        assert!(
+            (best.abscissa - there).abs() < near,
+            "{number}: {best:?} {there}"
+        );
+        let (from, to) = plane.gains;
+        let try_at = |gain: f64, m: u64| {
+            let abscissa = plane.abscissa(gain, m);
+            assert!(
+                best.abscissa < abscissa + near,
+                "{number}: {gain} {m} {abscissa} {best:?}"
+            );
+            let inside = |&(low, high): &(f64, f64)| low <= gain && gain <= high;
+            if abscissa.abs() > 1e-6 {
+                let stable = search.loops.stable(m, plane.gains).unwrap();
+                assert_eq!(
+                    stable.iter().any(inside),
+                    abscissa < 0.0,
+                    "{number}: {gain} {m}"
+                );
+            }
+            if abscissa < -1e-6 && found.regions_left_out == 0 {
+                let tau = m as f64 * h;
+                let in_region = found.regions.iter().any(|region| {
+                    let (shortest, longest) = region.delays;
+                    inside(&region.gains) && shortest < tau + 1e-9 && tau < longest + 1e-9
+                });
+                assert!(in_region, "{number}: {gain} {m}");
+            }
+        };
+        for m in 1..=plane.multiples {
+            for i in 0..=24 {
+                try_at(from + (to - from) * f64::from(i) / 24.0, m);
+            }
+        }
+        for _ in 0..40 {
+            let part = (2.0 * chance.unit() - 1.0) * 0.05 * (to - from);
+            let m = (m + 1).saturating_sub((3.0 * chance.unit()) as u64);
+            try_at(
+                (best.gain + part).clamp(from, to),
+                m.clamp(1, plane.multiples),
+            );
+        }
+    }
+}
+
+/// With many samples in a delay the best setting is that of the letter's continuous loop, a double
+/// pair, but for the latency of half a sample.
+#[test]
+fn the_best_setting_of_short_samples_is_the_continuous_one() {
+    // By `physics.md`, for mu' = -0.3: tau = 3.6158165, a_v = -0.2116364, abscissa -0.2066890.
+    let apart = [0.04, 0.01].map(|h| {
+        let [without, one] = [0.0, 1.0].map(|a_v| {
+            SampledLoop::new(Groups::new(-0.3, a_v, 0.0), Channel::default(), h).unwrap()
+        });
+        let search = SampledPlane {
+            loops: GainLine::through(without, &one),
+            gains: (-2.0, 2.0),
+            multiples: (1, (25.0 / h) as u64),
+        };
+        let found = search.best(&Stop::default());
+        assert_eq!(found.regions.len(), 2, "{found:?}");
+        assert!(found.overall.certified && found.overall.kind != Kind::Edge);
+        assert!((found.overall.gain + 0.211_636).abs() < 0.3 * h.sqrt());
+        found.overall.abscissa + 0.206_688_968
+    });
+    assert!(apart[1] > 0.0 && apart[1] < 0.7 * apart[0], "{apart:?}");
 }

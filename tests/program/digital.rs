@@ -171,14 +171,51 @@ fn what_cannot_be_sampled_is_told() {
         "{}",
         err(&rounded)
     );
-    let law = [
-        "--friction",
-        "weakening",
-        "--mu0=0.5",
-        "--v-s=0.5",
-        "--alpha-n=-10",
-        "--tau=0.5",
-    ];
-    let vc = [&["vc"], &law[..], &["--sample-time=0.1"]].concat();
-    expect(&folder.run(&vc), 2, "sample");
+}
+
+/// Best settings lie on whole samples, and come with a critical velocity where a law is known.
+#[test]
+fn best_settings_are_of_whole_samples() {
+    let folder = Folder::new();
+    let law = ["--friction=weakening", "--mu0=0.5", "--v-s=0.5", "--v0=0.5"];
+    let best = |more: &[&str]| {
+        let of = ["best", "--control=load", "--sample-time=0.1"];
+        folder.run(&[&of[..], &law[..], more].concat())
+    };
+    let found: serde_json::Value = serde_json::from_str(&out(&best(&["--json"]))).unwrap();
+    let samples = found["best"]["tau"].as_f64().unwrap() / 0.1;
+    assert!(
+        (samples - samples.round()).abs() < 1e-9 && samples > 0.5,
+        "{samples}"
+    );
+    assert_eq!(found["best"]["certified"], true);
+    assert!(found["vc"]["vc_upper"].as_f64().unwrap() > 0.0);
+    for (flags, told) in [
+        (&["--robust=0.05"][..], "a robust setting is searched"),
+        (&["--tau-to=0.05"], "a multiple of it is in the range"),
+        (&["--tau-to=5000"], "20000 samples at most"),
+    ] {
+        expect(&best(flags), 2, told);
+    }
+}
+
+#[test]
+fn critical_velocities_are_of_whole_samples() {
+    let folder = Folder::new();
+    let vc = |more: &[&str]| {
+        let of = [
+            "vc",
+            "--friction=weakening",
+            "--mu0=0.5",
+            "--v-s=0.5",
+            "--alpha-n=-10",
+            "--tau=0.5",
+        ];
+        folder.run(&[&of[..], more].concat())
+    };
+    let held = vc(&["--sample-time=0.025"]);
+    expect(&held, 0, "above 0.0235");
+    let between = vc(&["--sample-time=0.2"]);
+    expect(&between, 2, "the nearest ones are 0.4 and 0.6");
+    expect(&vc(&["--sample-time=0.1", "--load-lag=0.1"]), 2, "load-lag");
 }

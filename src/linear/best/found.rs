@@ -128,6 +128,16 @@ pub struct Region {
 }
 
 impl Region {
+    /// A region of which the stable delays are not kept.
+    pub(super) fn without_stretches(gains: (f64, f64), delays: (f64, f64), best: Optimum) -> Self {
+        Self {
+            gains,
+            delays,
+            best,
+            stretches: Stretches::new(),
+        }
+    }
+
     /// Whether a place is in the region, as the sampled gain next to it has it.
     pub(super) fn holds(&self, place: &Optimum) -> bool {
         let apart = |s: &&Stretch| (s.gain - place.gain).abs();

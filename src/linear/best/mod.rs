@@ -23,6 +23,7 @@
 //! - `regions`: the stable regions of a box: lobes
 //! - `rig`: a block on its spring whose gains, delay and slope of friction may be off
 //! - `robust`: the setting whose slowest decay over a box of changes is fastest
+//! - `sampled`: a digital loop over one of its gains and the multiples of its sample time
 //! - `search`: what is searched, and the abscissa at a place of it
 
 mod condition;
@@ -34,6 +35,7 @@ mod polish;
 mod regions;
 mod rig;
 mod robust;
+mod sampled;
 mod search;
 
 pub use found::{Best, Kind, MOST_REGIONS, Optimum, Region};
@@ -44,6 +46,7 @@ pub use rig::Rig;
 pub(crate) use rig::abscissa_at;
 pub(crate) use robust::UNPROVED;
 pub use robust::{Robust, robust, worst_around};
+pub use sampled::SampledPlane;
 pub use search::{ByParameters, Family, Place, Search};
 
 use condition::along_double_roots;

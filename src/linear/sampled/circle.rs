@@ -3,7 +3,7 @@
 //! With X = |ζ|² the size |c(ζ)|² of a quadratic is a quadratic in X, since 2 Re ζ = r² − 1 − X on
 //! the circle.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
@@ -67,11 +67,6 @@ impl Circle {
         }
     }
 
-    /// r.
-    pub(super) fn radius(&self) -> f64 {
-        self.radius
-    }
-
     /// c(ζ) at z = −r.
     pub(super) fn opposite(&self, [c0, c1, c2]: Quadratic) -> f64 {
         let zeta = -2.0 - self.beyond;
@@ -83,6 +78,20 @@ impl Circle {
         let (sine, cosine) = sincos(0.5 * angle);
         let imaginary = 2.0 * self.radius * sine * cosine;
         Complex64::new(self.beyond - 2.0 * self.radius * sine * sine, imaginary)
+    }
+
+    /// Bounds up to `angle` on |c| and on its first and second derivative with respect to the
+    /// angle.
+    pub(super) fn bounds(&self, c: Quadratic, angle: f64) -> [f64; 3] {
+        let [c0, c1, c2] = c.map(f64::abs);
+        let r = self.radius;
+        let far = self.beyond.abs() + r * angle.min(PI);
+        let slope = c1 + 2.0 * c2 * far;
+        [
+            c0 + c1 * far + c2 * far * far,
+            slope * r,
+            slope * r + 2.0 * c2 * r * r,
+        ]
     }
 
     /// The coefficients of |c(ζ)|² in X, the constant first, and the sizes of their terms.

@@ -43,6 +43,15 @@ pub fn multiple(delay: f64, sample_time: f64) -> Option<u64> {
     (near && (1.0..=super::MOST_SAMPLES).contains(&whole)).then_some(whole as u64)
 }
 
+/// The first and the last whole multiple of `sample_time`, at least one, between two delays; the
+/// last is less than the first where there is none.
+#[must_use]
+pub fn multiples_within(sample_time: f64, (from, to): (f64, f64)) -> (u64, u64) {
+    let first = (from * (1.0 - WHOLE) / sample_time).ceil().max(1.0);
+    let last = (to * (1.0 + WHOLE) / sample_time).floor();
+    (first as u64, last.min(super::MOST_SAMPLES) as u64)
+}
+
 /// The stability at all multiples of the sample time.
 #[derive(Debug, Clone)]
 pub struct SampledLine {

@@ -19,21 +19,26 @@
 //! at z = −r, one more zero comes to lie outside with each unit of the exponent.
 //!
 //! - `circle`: a circle, and where on it two polynomials are of the same size
+//! - `gains`: at which gains a loop is stable
 //! - `line`: all multiples of h as delays
-//! - `margins`: how far a stable loop is from the boundary: in gain, phase and latency
+//! - `margins`: how far a stable loop is from the boundary: in phase, latency and delay
+//! - `on_circle`: a loop on |z| = 1, with bounds on the sizes of its polynomials
 //! - `outside`: how many zeros lie outside a circle
 //! - `roots`: the zeros of largest size
 //! - `step`: what one sample time does to the block
 
 mod circle;
+mod gains;
 mod line;
 mod margins;
+mod on_circle;
 mod outside;
 mod roots;
 mod step;
 
 use crate::model::{Channel, Groups};
-pub use line::{SampledLine, multiple};
+pub use gains::GainLine;
+pub use line::{SampledLine, multiple, multiples_within};
 pub use roots::SampledRoots;
 use step::Step;
 

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::SampledLoop;
 use super::circle::{Circle, Junction, turned, value};
+use super::on_circle::times;
 use super::step::Quadratic;
 use crate::linear::real_zeros::{
     At, MOST_STEPS, RealFunction, Search, TooMany, lowest_decided, zeros_from,
@@ -182,17 +183,7 @@ impl<'l> Gap<'l> {
     /// Bounds up to `angle` on |p|, |p′|, |p″| and on those of q, derivatives being those with
     /// respect to the angle.
     fn bounds(&self, angle: f64) -> [[f64; 3]; 2] {
-        let r = self.circle.radius();
-        let far = (self.circle.radius() - 1.0).abs() + r * angle.min(std::f64::consts::PI);
-        [self.of.step.open, self.of.step.held].map(|[c0, c1, c2]| {
-            let [c0, c1, c2] = [c0.abs(), c1.abs(), c2.abs()];
-            let slope = c1 + 2.0 * c2 * far;
-            [
-                c0 + c1 * far + c2 * far * far,
-                slope * r,
-                slope * r + 2.0 * c2 * r * r,
-            ]
-        })
+        [self.of.step.open, self.of.step.held].map(|c| self.circle.bounds(c, angle))
     }
 
     /// A bound on how fast r^m U and V change with the angle, up to it.
@@ -240,12 +231,7 @@ impl RealFunction for Gap<'_> {
         let [p, q] = self.bounds(angle);
         let late = self.of.late as f64;
         let of_square = |c: [f64; 3]| 2.0 * (c[1] * c[1] + c[0] * c[2]);
-        let turned = [
-            p[0],
-            p[1] + late * p[0],
-            p[2] + 2.0 * late * p[1] + late * late * p[0],
-        ];
-        let of_both = turned[2] * q[0] + 2.0 * turned[1] * q[1] + turned[0] * q[2];
+        let of_both = times(times(p, [1.0, late, late * late]), q)[2];
         let [a, b, c] = self.factors.map(f64::abs);
         a * of_square(p) + b * of_square(q) + c * of_both
     }

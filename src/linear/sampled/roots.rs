@@ -95,6 +95,12 @@ impl SampledLoop {
         (found, true)
     }
 
+    /// The largest Re λ h of a root at a delay of `multiple` samples; none where it is not found.
+    pub(crate) fn largest_growth(&self, multiple: u64) -> Option<f64> {
+        let (found, _) = self.largest(multiple, 1);
+        found.first().map(|zero| zero.log.re)
+    }
+
     /// Adds the zeros whose ln |z| is `growth` to within `near`.
     fn polish_on(&self, growth: f64, near: f64, multiple: u64, found: &mut Vec<Zero>) {
         let before = found.len();
@@ -205,24 +211,11 @@ impl SampledRoots {
         Self { of }
     }
 
-    fn samples(&self, tau: f64) -> Option<u64> {
-        multiple(tau, self.of.sample_time)
-    }
-}
-
-impl Roots for SampledRoots {
-    fn line(&self, time_unit: f64) -> Box<dyn Line> {
-        Box::new(self.of.line(time_unit))
-    }
-
-    fn count(&self, tau: f64, time_unit: f64) -> Option<Count> {
-        let line: SampledLine = self.of.line(time_unit);
-        line.count(tau, MarginalTolerance::default())
-    }
-
-    fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum {
+    /// The rightmost roots at the delay `tau`, of which the unstable ones are counted already.
+    #[must_use]
+    pub fn counted(&self, tau: f64, wanted: usize, count: Option<Count>) -> Spectrum {
         let mut spectrum = Spectrum {
-            count: self.count(tau, 1.0),
+            count,
             roots: Vec::new(),
             abscissa: f64::NAN,
             essential_abscissa: f64::NEG_INFINITY,
@@ -268,6 +261,25 @@ impl Roots for SampledRoots {
             spectrum.certified = agrees && apart && !count.marginal;
         }
         spectrum
+    }
+
+    fn samples(&self, tau: f64) -> Option<u64> {
+        multiple(tau, self.of.sample_time)
+    }
+}
+
+impl Roots for SampledRoots {
+    fn line(&self, time_unit: f64) -> Box<dyn Line> {
+        Box::new(self.of.line(time_unit))
+    }
+
+    fn count(&self, tau: f64, time_unit: f64) -> Option<Count> {
+        let line: SampledLine = self.of.line(time_unit);
+        line.count(tau, MarginalTolerance::default())
+    }
+
+    fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum {
+        self.counted(tau, wanted, self.count(tau, 1.0))
     }
 
     fn right_of(&self, tau: f64, line: f64) -> RightOf {

@@ -5,7 +5,7 @@ use super::line::Places;
 use super::root_columns::relaxation_time;
 use crate::linear::MarginalTolerance;
 use crate::linear::general::Spectrum;
-use crate::linear::line::{Line, Roots};
+use crate::linear::line::Line;
 use crate::linear::sampled::{SampledLine, SampledLoop, SampledRoots};
 use crate::linear::status::{
     CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED, OUTSIDE_MODEL, SATURATED,
@@ -46,7 +46,8 @@ pub(super) fn fill(cells: &SampledCells, buffers: &mut TileBuffers) {
         }
         fill_line(&line, (tau, place), buffers);
         if wanted > 0 && !cells.stop.is_set() {
-            let found = roots.spectrum(tau / cells.time_unit, wanted);
+            let counted = line.count(tau, MarginalTolerance::default());
+            let found = roots.counted(tau / cells.time_unit, wanted, counted);
             fill_roots(cells, (&found, wanted), place, buffers);
         }
     }
