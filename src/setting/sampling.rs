@@ -194,6 +194,11 @@ impl Setting {
         found.is_some_and(|found| matches!(found.why, Why::Between(_)))
     }
 
+    /// Whether all parameters go with the sample time, or with its absence.
+    pub(crate) fn fits_samples(&self) -> bool {
+        NotSampled::find(|p| self.get(p)).is_none()
+    }
+
     /// The message and the help where a parameter does not go with the sample time; none where all
     /// do. `name` gives the name of a parameter.
     pub(crate) fn not_sampled(&self, name: fn(Parameter) -> String) -> Option<(String, String)> {

@@ -56,10 +56,12 @@ pub(crate) fn check(feedback: &Feedback) -> Result<(), ModelError> {
     }
     let times = |time: f64| multiple(time, sample_time);
     let whole = times(tau).is_some_and(|times| times <= MOST_READINGS);
-    let allowed = "a whole multiple of sample_time, at least one and at most a million";
+    let allowed = "a whole multiple of sample_time, at least one and at most a million (a longer \
+        sample_time has fewer)";
     ModelError::check("tau", tau, allowed, whole)?;
     let whole = latency == 0.0 || times(latency).is_some_and(|times| times <= MOST_READINGS);
-    let allowed = "0 or a whole multiple of sample_time, at most a million";
+    let allowed = "0 or a whole multiple of sample_time, at most a million (a longer sample_time has \
+        fewer)";
     ModelError::check("latency", latency, allowed, whole)?;
     Ok(())
 }

@@ -105,6 +105,47 @@ fn a_map_has_cells_of_digital_loops() {
     }
 }
 
+/// A plane of whole samples has best settings. Motions whose delay lies between samples are outside
+/// the model, as those with noise and without readings.
+#[test]
+fn planes_and_motions_are_of_whole_samples() {
+    const PLANE: &str = "
+        best = true
+        fields = [\"n_unstable\"]
+        [axes]
+        alpha_v = { from = -1.0, to = 0.2, points = 31 }
+        tau = { from = 0.35, to = 8.4, points = 24 }
+        [fixed]
+        mu_prime = -0.3
+        sample_time = 0.35
+    ";
+    const MOTIONS: &str = "
+        fields = [\"outcome\"]
+        [axes]
+        sample_time = [0.0, 0.14, 0.35, 0.4]
+        [fixed]
+        v0 = 0.35
+        tau = 4.2
+        alpha_v = -0.33
+        noise = 1e-4
+        [friction]
+        law = \"weakening\"
+        mu0 = 0.5
+        v_s = 0.5
+    ";
+    let folder = Folder::with(&[("plane.toml", PLANE), ("motions.toml", MOTIONS)]);
+    for name in ["plane", "motions"] {
+        let [sweep, map] = ["toml", "h5"].map(|ending| format!("{name}.{ending}"));
+        expect(&folder.run(&["run", &sweep, "-o", &map]), 0, "");
+        expect(&folder.run(&["verify", &map]), 0, "");
+    }
+    let told = json(&folder, &["info", "plane.h5", "--json"]);
+    assert!(told["best"].is_object(), "{told}");
+    // Without readings there is no noise, and 4.2 is no multiple of 0.4.
+    let told = json(&folder, &["info", "motions.h5", "--json"]);
+    assert_eq!(told["status"]["outside_model"], 2, "{told}");
+}
+
 /// The same seed gives the same motion, another one another.
 #[test]
 fn noise_is_that_of_the_seed() {

@@ -109,7 +109,6 @@ impl SweepFile<'_> {
                 "degree_of_stability",
                 !self.spec.degrees_of_stability.is_empty(),
             ),
-            ("best", self.spec.best),
         ];
         let found = asked.into_iter().find(|(_, asked)| *asked);
         match found.filter(|_| self.spec.is_sampled()) {

@@ -3,7 +3,7 @@
 use super::buffers::TileBuffers;
 use super::line::SlowLine;
 use crate::answers::basin::{BasinProblem, Tally};
-use crate::linear::status::NOT_CONVERGED;
+use crate::linear::status::{NOT_CONVERGED, OUTSIDE_MODEL};
 use crate::model::stop::Stop;
 use crate::setting::basin::Basin;
 use crate::setting::simulation::Simulation;
@@ -39,7 +39,8 @@ impl<'p> BasinColumns<'p> {
     }
 
     /// Follows the starts of each cell of a line into `buffers`. The status gains [`NOT_CONVERGED`]
-    /// where some stay undecided.
+    /// where some stay undecided, [`OUTSIDE_MODEL`] where what is read does not go with the sample
+    /// time.
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         line.each(|here| {
             let Some(cell) = self.cell(here.setting, line.stop) else {
@@ -49,7 +50,10 @@ impl<'p> BasinColumns<'p> {
             // followed.
             let cell = cell.unwrap_or(UNKNOWN);
             if cell.upper > cell.share {
-                buffers.status[here.place] |= NOT_CONVERGED;
+                buffers.status[here.place] |= match here.setting.fits_samples() {
+                    true => NOT_CONVERGED,
+                    false => OUTSIDE_MODEL,
+                };
             }
             buffers.put(here.place, |field| match field.source() {
                 Source::Basin(value) => Some(value(&cell)),

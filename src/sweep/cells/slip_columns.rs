@@ -2,7 +2,7 @@
 
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
-use crate::linear::status::NOT_CONVERGED;
+use crate::linear::status::{NOT_CONVERGED, OUTSIDE_MODEL};
 use crate::model::stop::Stop;
 use crate::setting::simulation::Simulation;
 use crate::setting::source::Source;
@@ -45,7 +45,8 @@ impl<'p> SlipColumns<'p> {
     }
 
     /// Follows the motions of a line into `buffers`. The status gains
-    /// [`NOT_CONVERGED`] where a motion stays undecided. Motions need a sliding state.
+    /// [`NOT_CONVERGED`] where a motion stays undecided, [`OUTSIDE_MODEL`] where what is read does
+    /// not go with the sample time. Motions need a sliding state.
     pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         if line.of_letter.is_none() {
             return;
@@ -53,7 +54,10 @@ impl<'p> SlipColumns<'p> {
         line.each(|here| {
             let motion = self.motion_at(&here, line.stop);
             if motion.outcome == Outcome::Undecided {
-                buffers.status[here.place] |= NOT_CONVERGED;
+                buffers.status[here.place] |= match here.setting.fits_samples() {
+                    true => NOT_CONVERGED,
+                    false => OUTSIDE_MODEL,
+                };
             }
             buffers.put(here.place, |field| match field.source() {
                 Source::Motion(value) | Source::MotionOrCritical(value, _) => Some(value(&motion)),
