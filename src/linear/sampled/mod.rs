@@ -21,6 +21,7 @@
 //! - `circle`: a circle, and where on it two polynomials are of the same size
 //! - `line`: all multiples of h as delays
 //! - `margins`: how far a stable loop is from the boundary: in gain, phase and latency
+//! - `noise`: what white noise of the readings does to the block and to their mean
 //! - `outside`: how many zeros lie outside a circle
 //! - `roots`: the zeros of largest size
 //! - `step`: what one sample time does to the block
@@ -28,12 +29,14 @@
 mod circle;
 mod line;
 mod margins;
+mod noise;
 mod outside;
 mod roots;
 mod step;
 
 use crate::model::{Channel, Groups};
 pub use line::{SampledLine, multiple};
+pub use noise::NoiseResponse;
 pub use roots::SampledRoots;
 use step::Step;
 
