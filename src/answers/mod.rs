@@ -6,6 +6,7 @@
 //! - `best_of_samples`: best settings of a digital loop
 //! - `drawn_laws`: the laws that a fit allows, and for which of them a setting is stable
 //! - `margins`: margins of a setting, in its own units
+//! - `measure`: friction measured through control, at one v0 of an experiment
 //! - `robust_to_fit`: the setting that is most robust against the errors of a fit
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
@@ -19,6 +20,7 @@ pub mod best;
 mod best_of_samples;
 pub mod drawn_laws;
 pub mod margins;
+pub mod measure;
 pub mod robust_to_fit;
 pub mod samples;
 mod sobol;

@@ -49,6 +49,7 @@ impl Kind {
             ),
             Self::Text(TextKind::Sweep) => ("a sweep file", "`slipmap plan` and `run` take it"),
             Self::Text(TextKind::Case) => ("a case file", "`slipmap plan` and `simulate` take it"),
+            Self::Text(TextKind::Experiment) => ("an experiment", "`slipmap measure` takes it"),
             Self::Text(TextKind::Setting) => (
                 "a file of a setting",
                 "`slipmap point` and `margins` take it with --setting; with a friction law `vc`, \

@@ -33,6 +33,8 @@
 //! - `limit_args`: the flags for a point of the limit of a short delay
 //! - `man`: `slipmap man`
 //! - `margins`: `slipmap margins`
+//! - `measure`: `slipmap measure`
+//! - `measure_text`: the output of `slipmap measure` for people
 //! - `memory`: the memory that a run may take, and the threads that stay within it
 //! - `merge`: `slipmap merge`
 //! - `motion_text`: the outcome of a motion, in words and numbers for people
@@ -106,6 +108,8 @@ mod law_args;
 mod limit_args;
 mod man;
 mod margins;
+mod measure;
+mod measure_text;
 mod memory;
 mod merge;
 mod motion_text;
@@ -241,6 +245,8 @@ commands! {
     Vc(vc, described),
     /// The share of starts from which control ends in sliding, with its error
     Basin(basin, described),
+    /// Measure friction through control: means of the elongation at many v0, with their errors
+    Measure(measure, described),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate, described),
     /// Draw a map or a trace as PNG, SVG or PDF

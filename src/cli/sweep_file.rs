@@ -1,4 +1,5 @@
-//! Reads sweep files, case files and tables of friction, with errors that point into them.
+//! Reads sweep files, case files, experiments and tables of friction, with errors that point into
+//! them.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -10,7 +11,7 @@ use crate::setting::measured::{CurveOptions, Measured, decoded};
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::system::SystemModel;
 use crate::setting::table_file::{Inlined, Named, NotInlined};
-use crate::setting::{CaseSpec, SweepSpec};
+use crate::setting::{CaseSpec, ExperimentSpec, SweepSpec};
 use crate::store::regular::{self, NotRead};
 use crate::sweep::Plan;
 use crate::text::SpecError;
@@ -39,6 +40,11 @@ fn check_kind(
     }
 }
 
+/// Whether a text is neither a sweep nor a case.
+fn is_another(kind: TextKind) -> bool {
+    matches!(kind, TextKind::System | TextKind::Experiment)
+}
+
 /// The plan of the sweep file at `path`.
 pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     check_kind(path, "a sweep file, which has [axes]", |kind| {
@@ -61,8 +67,7 @@ pub(super) enum Described {
 
 /// Reads the sweep or case file at `path`.
 pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
-    let system = |kind| kind == TextKind::System;
-    check_kind(path, "a sweep or case file", system)?;
+    check_kind(path, "a sweep or case file", is_another)?;
     let described = read_with_table(path, "sweep", |text| {
         if is_case_file(text) {
             return text.parse().map(Described::Case);
@@ -79,10 +84,20 @@ pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
 
 /// The case of the case file at `path`.
 pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
-    check_kind(path, "a case file", |kind| kind == TextKind::System)?;
+    check_kind(path, "a case file", is_another)?;
     let case: CaseSpec = read_with_table(path, "case", str::parse)?;
     tell_assumed_units(&case.units);
     Ok(case)
+}
+
+/// The experiment of the file at `path`.
+pub(super) fn read_experiment(path: &Path) -> Result<ExperimentSpec, Failure> {
+    check_kind(path, "an experiment, which has [experiment]", |kind| {
+        matches!(kind, TextKind::System | TextKind::Sweep)
+    })?;
+    let spec: ExperimentSpec = read_with_table(path, "experiment", str::parse)?;
+    tell_assumed_units(&spec.units);
+    Ok(spec)
 }
 
 /// Reads a point from the file at `path`.

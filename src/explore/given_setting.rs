@@ -96,7 +96,7 @@ impl GivenSetting {
                     ..given
                 })
             }
-            Some(TextKind::Setting) | None => {
+            Some(TextKind::Setting | TextKind::Experiment) | None => {
                 let point = PointSpec::read(text, PointOf::Sliding)?;
                 Self::of(&point.setting, &point.units, "")
             }

@@ -12,6 +12,7 @@
 //! - [`basin`]: the share of starts from which control ends in sliding
 //! - [`best`]: the settings of fastest decay, with all about the recommended one; [`robust`]: what
 //!   it is to stand; [`best_answer`]: the same as plain data
+//! - [`measure`]: an experiment that measures friction through control, at all of its v0
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`given_setting`]: what a file says of a setting
@@ -39,6 +40,7 @@ pub mod known;
 pub mod law;
 pub mod margin_kind;
 pub mod margins;
+pub mod measure;
 pub mod motion;
 pub mod motion_bytes;
 pub mod point;

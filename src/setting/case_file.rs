@@ -106,6 +106,8 @@ pub(crate) enum TextKind {
     Setting,
     /// A system file.
     System,
+    /// An experiment.
+    Experiment,
 }
 
 /// The kind of a text, by its keys; none where they do not fit one kind.
@@ -118,6 +120,8 @@ pub(crate) fn kind_of_text(text: &str) -> Option<TextKind> {
         Some(TextKind::Sweep)
     } else if entries.iter().any(|e| OF_SYSTEMS.contains(&e.key)) {
         Some(TextKind::System)
+    } else if entries.iter().any(|e| e.key == "experiment") {
+        Some(TextKind::Experiment)
     } else if entries.is_empty() || !all(&names(&CASE)) {
         None
     } else if all(&["fixed", "friction", "units"]) {
@@ -197,6 +201,10 @@ impl std::str::FromStr for CaseSpec {
         document.refuse(
             &OF_SWEEPS,
             "it is a key of a sweep file, of a map: `slipmap run` takes it",
+        );
+        document.refuse(
+            &["experiment"],
+            "it is a key of an experiment: `slipmap measure` takes it",
         );
         let title = document.take("title", Entry::line).unwrap_or_default();
         let given = GivenParameters::of(&mut document, text, moves);

@@ -411,6 +411,73 @@ pub(crate) const TRACE: [Key; 3] = [
     ),
 ];
 
+/// The keys of an experiment, a file that `slipmap measure` reads.
+pub(crate) const EXPERIMENT_FILE: [Key; 8] = [
+    TITLE,
+    needed("experiment", "a table", "what is measured, and how"),
+    needed("friction", "a table", "the friction law that is put in"),
+    Key {
+        meaning: "parameters but v0; gain and delay with setting = \"given\"",
+        ..FIXED
+    },
+    SIMULATION[1],
+    SIMULATION[2],
+    SIMULATION[3],
+    UNITS_KEY,
+];
+
+/// The keys of `[experiment]`.
+pub(crate) const EXPERIMENT: [Key; 8] = [
+    needed(
+        "v0",
+        "a list of 1 to 1000 velocities, or a range as of an axis",
+        "the pulling velocities, in the order in which they are measured",
+    ),
+    key(
+        "setting",
+        "\"best\" or \"given\"",
+        "\"best\"",
+        "gain and delay: the robust best ones of each v0, or those in `[fixed]`",
+    ),
+    key(
+        "control",
+        "\"load\" or \"velocity\"",
+        "\"load\"",
+        "with setting = \"best\": the gain that is searched beside the delay",
+    ),
+    key(
+        "start",
+        "\"sliding\", \"step\" or \"stick-slip\"",
+        "\"sliding\"",
+        "how each v0 begins: sliding, 1 % faster than pulled, as after a small step; from sliding \
+         at the v0 before, v0 jumps; or just released from uncontrolled stick-slip",
+    ),
+    key(
+        "wait",
+        "a time, from 1e-12 to 1e12",
+        "25 relaxation times and 2 delays",
+        "how long each v0 is held before the mean begins",
+    ),
+    key(
+        "average",
+        "a time, from 1e-12 to 1e12",
+        "100 relaxation times",
+        "how long the elongation is averaged",
+    ),
+    key(
+        "drift",
+        "a rate, 1/time",
+        "0",
+        "r of a v0 that drifts as v0 (1 + r t), t from its beginning",
+    ),
+    key(
+        "repeats",
+        "a whole number from 1 to 100 000",
+        "1",
+        "how often each v0 is measured, with noise of its own",
+    ),
+];
+
 #[cfg(test)]
 mod tests {
     use super::super::axis::MOST_POINTS;
@@ -485,6 +552,8 @@ mod tests {
             &CASE,
             &PROGRAMME,
             &TRACE,
+            &EXPERIMENT_FILE,
+            &EXPERIMENT,
         ] {
             let mut names = names(keys);
             names.sort_unstable();

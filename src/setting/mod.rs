@@ -10,6 +10,7 @@
 //! - `checked`: a setting of named numbers, checked as a file is
 //! - `command`: the command line for a setting
 //! - `curve_remark`: remarks on velocities at which a measured friction law says little
+//! - `experiment`: an experiment that measures friction through control, read and checked once
 //! - `expression`: expressions of named numbers
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `fields_asked`: the fields that are asked for, and where
@@ -66,6 +67,7 @@ mod catalogue;
 mod checked;
 pub mod command;
 mod curve_remark;
+pub mod experiment;
 mod expression;
 pub mod field;
 mod fields_asked;
@@ -112,6 +114,7 @@ mod vc_keys;
 
 pub use axis::Axis;
 pub use case_file::CaseSpec;
+pub use experiment::ExperimentSpec;
 pub use field::Field;
 pub use parameter::Parameter;
 pub use spec::SweepSpec;

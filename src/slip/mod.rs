@@ -1,5 +1,6 @@
 //! The nonlinear oscillator: stick, slip, lift-off and delayed feedback, with exact events.
 //!
+//! - [`averaging`]: the mean of the elongation over a time, as a sensor reads it
 //! - [`case`]: a motion in physical units, to its outcome
 //! - [`cycle`]: motions that begin in uncontrolled stick-slip
 //! - [`forces`]: the forces on the block in a state
@@ -16,6 +17,7 @@
 //! - `steady`: when a motion whose readings are held has come to what it goes on as
 //! - `watch`: follows a motion until its outcome is known
 
+pub mod averaging;
 pub mod case;
 mod collocation;
 pub mod cycle;

@@ -68,7 +68,7 @@ pub(crate) fn check(feedback: &Feedback) -> Result<(), ModelError> {
 
 /// What the sensor says of the elongation `a` in reading `number`.
 #[must_use]
-fn reading(of: &Readings, number: i64, a: f64) -> f64 {
+pub(super) fn reading(of: &Readings, number: i64, a: f64) -> f64 {
     let noisy = match of.noise > 0.0 {
         true => a + of.noise * gaussian(of.seed, number),
         false => a,

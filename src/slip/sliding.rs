@@ -6,6 +6,9 @@ use crate::linear::{Count, MarginalTolerance};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups};
 
+/// Roots that are asked for where one alone is not told apart from others.
+const MORE: usize = 4;
+
 /// Sliding at one velocity, dimensionless as a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sliding {
@@ -43,6 +46,17 @@ impl Sliding {
         }
         let found = roots.spectrum(self.tau, 1);
         Some(found.abscissa).filter(|abscissa| found.certified && *abscissa < 0.0)
+    }
+
+    /// The spectral abscissa as far as it is known where all roots are stable, if not certified;
+    /// none where they are not, or are not counted.
+    pub(crate) fn slowest(&self) -> Option<f64> {
+        if let Some(certified) = self.stable_abscissa() {
+            return Some(certified);
+        }
+        let count = self.count(MarginalTolerance::default());
+        let found = self.roots()?.spectrum(self.tau, MORE);
+        Some(found.abscissa).filter(|abscissa| count.stable() && *abscissa < 0.0)
     }
 
     /// The roots; none where the latency is no multiple of the sample time.

@@ -132,9 +132,19 @@ impl Step {
     /// The displacement since the start of the step at `s`.
     #[must_use]
     pub fn displacement(&self, s: f64) -> f64 {
+        self.integral(&self.u, s)
+    }
+
+    /// The integral of the elongation over the whole step.
+    pub(super) fn integral_of_elongation(&self) -> f64 {
+        self.integral(&self.a, self.length)
+    }
+
+    /// The integral of `c` from the start of the step to `s`.
+    fn integral(&self, c: &Coefficients, s: f64) -> f64 {
         let mut mean = [0.0; MOST_ORDER + 1];
-        for (mean, (u, per_next)) in mean.iter_mut().zip(self.u.iter().zip(&PER_NEXT)) {
-            *mean = u * per_next;
+        for (mean, (c, per_next)) in mean.iter_mut().zip(c.iter().zip(&PER_NEXT)) {
+            *mean = c * per_next;
         }
         s * value(Self::range(&mean, self.order), s)
     }

@@ -20,6 +20,7 @@ mod held;
 mod integrator;
 mod letter_vc;
 mod limit;
+mod measure;
 mod simulate;
 mod switch_on;
 mod times;

@@ -30,6 +30,7 @@ mod fits;
 mod flips;
 mod formulas;
 mod manners;
+mod measure;
 mod names;
 mod pictures;
 mod point_plot;

@@ -698,6 +698,7 @@ fn schemas_say_of_each_key_what_null_means() {
         "best",
         "info",
         "margins",
+        "measure",
         "plan",
         "point",
         "reproduce",

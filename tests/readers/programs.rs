@@ -947,7 +947,7 @@ fn the_compliance_checker_finds_nothing() {
 }
 
 /// What every command prints with `--json`, each kind of answer once.
-const ANSWERS: [(&str, &str); 24] = [
+const ANSWERS: [(&str, &str); 25] = [
     (
         "point.plain",
         "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
@@ -977,6 +977,7 @@ const ANSWERS: [(&str, &str); 24] = [
     ("best.none", "best --mu-prime=-2 --control velocity"),
     ("best.memory", "best --mu-prime=-0.3 --memory 0.2"),
     ("best.system", "best --system turning --search width"),
+    ("measure.velocity", "measure experiment.toml"),
     ("simulate.case", "simulate case.toml"),
     ("plan.sweep", "plan sweep.toml"),
     (
@@ -1012,6 +1013,9 @@ fn json_is_as_its_schema_says() {
                 law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
     std::fs::write(file("sweep.toml"), sweep).unwrap();
     std::fs::write(file("case.toml"), case).unwrap();
+    let experiment = "[experiment]\nv0 = [0.05, 0.5]\ncontrol = \"velocity\"\n[friction]\n\
+                      law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    std::fs::write(file("experiment.toml"), experiment).unwrap();
     let slipmap = |words: &str| {
         let mut command = command(env!("CARGO_BIN_EXE_slipmap"), folder.path(), []);
         run(command.args(words.split(' ')))

@@ -237,9 +237,9 @@ fn sweep_files(page: &mut String) {
     heading(page, 1, "Sweep and case files");
     paragraph(
         page,
-        "Both are [TOML](https://toml.io). A sweep file asks for a map, a case file for one \
-         motion. A key that is not known, or that has no meaning where it stands, is refused at \
-         its place; nothing is passed over.",
+        "All are [TOML](https://toml.io). A sweep file asks for a map, a case file for one \
+         motion, an experiment for friction measured through control. A key that is not known, or \
+         that has no meaning where it stands, is refused at its place; nothing is passed over.",
     );
     heading(page, 2, "Keys of a sweep file");
     keys_of(page, &keys::SWEEP);
@@ -274,6 +274,11 @@ fn sweep_files(page: &mut String) {
     keys_of(page, &keys::TRACE);
     heading(page, 2, "`[[programme]]`");
     keys_of(page, &keys::PROGRAMME);
+    heading(page, 2, "Keys of an experiment");
+    paragraph(page, "A file that `slipmap measure` takes:");
+    keys_of(page, &keys::EXPERIMENT_FILE);
+    heading(page, 2, "`[experiment]`");
+    keys_of(page, &keys::EXPERIMENT);
 }
 
 fn system_files(page: &mut String) {

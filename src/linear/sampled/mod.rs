@@ -22,6 +22,7 @@
 //! - `gains`: at which gains a loop is stable
 //! - `line`: all multiples of h as delays
 //! - `margins`: how far a stable loop is from the boundary: in phase, latency and delay
+//! - `noise`: what white noise of the readings does to the block and to their mean
 //! - `on_circle`: a loop on |z| = 1, with bounds on the sizes of its polynomials
 //! - `outside`: how many zeros lie outside a circle
 //! - `roots`: the zeros of largest size
@@ -31,6 +32,7 @@ mod circle;
 mod gains;
 mod line;
 mod margins;
+mod noise;
 mod on_circle;
 mod outside;
 mod roots;
@@ -39,6 +41,7 @@ mod step;
 use crate::model::{Channel, Groups};
 pub use gains::GainLine;
 pub use line::{SampledLine, multiple, multiples_within};
+pub use noise::NoiseResponse;
 pub use roots::SampledRoots;
 use step::Step;
 

@@ -42,6 +42,27 @@ impl Step {
     }
 }
 
+/// What a time since a reading makes of (u, a, S): the rows of u and of a.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rows {
+    pub u: [f64; 3],
+    pub a: [f64; 3],
+}
+
+impl Rows {
+    /// The time `s` ≥ 0 after a reading, by Φ = 1 + A E and Γ = E g.
+    pub(super) fn after(groups: Groups, s: f64) -> Self {
+        let Groups { b, a_v, a_n } = groups;
+        let [e0, e1] = integral(b, s);
+        // A E = −e₁ + (e₀ − b e₁) A, and A (u, a) = (a − b u, −u).
+        let (same, turned) = (1.0 - e1, e0 - b * e1);
+        Self {
+            u: [same - b * turned, turned, -e0 * a_n + e1 * (a_v + b * a_n)],
+            a: [-turned, same, e0 * a_v + e1 * a_n],
+        }
+    }
+}
+
 /// E = e₀ + e₁ A.
 fn integral(b: f64, h: f64) -> [f64; 2] {
     let mut halvings = 0;
@@ -92,6 +113,29 @@ mod tests {
             let expected = 4.0 * sine * sine;
             assert!((p0 - expected).abs() <= 1e-13 * expected, "{h}");
             assert!((p1 - expected).abs() <= 1e-13 * expected, "{h}");
+        }
+    }
+
+    /// The rows are those of the exponential: their determinant, and u̇ = a − b u − a_n S at once.
+    #[test]
+    fn rows_follow_the_equations() {
+        let groups = Groups::new(-0.7, 0.3, -1.9);
+        let ds = 1e-5;
+        for s in [0.0, 0.2, 1.7] {
+            let [at, next] = [s, s + ds].map(|s| Rows::after(groups, s));
+            let determinant = at.u[0] * at.a[1] - at.u[1] * at.a[0];
+            assert!((determinant - 1.0 - expm1(0.7 * s)).abs() < 1e-13, "{s}");
+            for column in 0..3 {
+                let signal = f64::from(column == 2);
+                let [u, a] = [0.5 * (at.u[column] + next.u[column]), at.a[column]];
+                let a = 0.5 * (a + next.a[column]);
+                let [du, da] = [at.u, at.a].map(|row| row[column]);
+                let [du, da] = [(next.u[column] - du) / ds, (next.a[column] - da) / ds];
+                let off = du - (a + 0.7 * u + 1.9 * signal);
+                assert!(off.abs() < 1e-8, "{s} {column} {off}");
+                let off = da - (0.3 * signal - u);
+                assert!(off.abs() < 1e-8, "{s} {column} {off}");
+            }
         }
     }
 

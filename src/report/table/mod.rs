@@ -6,12 +6,14 @@
 //!
 //! - `cells`: the cells of a map as rows
 //! - `curves`: the crossing curves of a map as rows, one for each vertex
+//! - `measured`: friction measured through control, a row for each v0
 //! - `motion`: a motion as rows
 //! - `speeds`: the column of a speed beside the delay that is its period
 //! - `starts`: starts of motions with their outcomes, as rows
 
 mod cells;
 mod curves;
+mod measured;
 mod motion;
 mod speeds;
 mod starts;
@@ -21,6 +23,7 @@ use std::io::{self, Write};
 
 pub use cells::write_cells;
 pub use curves::write_curves;
+pub use measured::write_measured;
 pub use motion::{write_events, write_samples};
 pub use starts::write_starts;
 

@@ -84,6 +84,11 @@ impl<'s> Titles<'s> {
             .or_else(|| under.and_then(bare))
     }
 
+    /// The column that says whether a row settled, if there is one.
+    pub(super) fn settled(&self) -> Option<usize> {
+        self.titles.iter().position(Title::tells_settled)
+    }
+
     /// A column in messages: its number, and its title if it has one.
     pub(super) fn name(&self, column: usize) -> String {
         match self.titles.get(column).map(|title| title.text) {

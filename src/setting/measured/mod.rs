@@ -94,7 +94,7 @@ impl Measured {
         remarks.extend(of_force);
         let mark = reader.decimal_mark()?;
         let (readings, left_out) = reader.readings(&Scales { mark, speed, force })?;
-        remarks.extend(left_out);
+        remarks.extend(left_out.into_iter().flatten());
         let (points, of_points) = points(readings, &names[1])?;
         remarks.extend(of_points);
         Ok(Self {
@@ -144,7 +144,7 @@ impl Measured {
 
     fn refused(&self, error: &TableError, groups: &[&[MeasuredPoint]]) -> SpecError {
         let left_out = self.remarks.iter().find_map(|remark| match remark {
-            Remark::LeftOut { .. } => Some(remark.to_string()),
+            Remark::LeftOut { .. } | Remark::Unsettled { .. } => Some(remark.to_string()),
             _ => None,
         });
         match error {
@@ -174,6 +174,14 @@ fn no_numbers(sheet: &Sheet) -> SpecError {
         ..SpecError::whole(message)
             .help("columns are separated by `;`, tabs, commas or blanks: 0.1, 0.52")
     }
+}
+
+/// What is told of rows that are left out: no numbers, or not settled.
+type LeftOut = [Option<Remark>; 2];
+
+/// Whether a cell of a column of answers says no.
+fn is_no(cell: &str) -> bool {
+    ["false", "no", "0"].contains(&&*cell.to_lowercase())
 }
 
 /// How the numbers of cells are read.
@@ -221,17 +229,27 @@ impl Reader<'_> {
         Ok((scale, converted("speeds", scale, [unit, &to])))
     }
 
-    /// Rows of numbers, with speeds in units of the setting, and what is told of other rows.
-    fn readings(&self, scales: &Scales) -> Result<(Vec<Reading>, Option<Remark>), SpecError> {
+    /// Rows of numbers, with speeds in units of the setting, and what is told of other rows. Those
+    /// of which a column says that they did not settle are no points of a curve.
+    fn readings(&self, scales: &Scales) -> Result<(Vec<Reading>, LeftOut), SpecError> {
         let mut readings = Vec::new();
-        let mut left_out: Option<(usize, usize)> = None;
+        let (mut left_out, mut unsettled) = (None, None);
+        let settled = self.titles.settled();
         for row in self.sheet.data() {
+            let count = |of: &mut Option<(usize, usize)>| of.get_or_insert((0, row.line)).0 += 1;
+            if settled.is_some_and(|column| is_no(row.cell(column))) {
+                count(&mut unsettled);
+                continue;
+            }
             match self.reading(row, scales)? {
                 Some(reading) => readings.push(reading),
-                None => left_out.get_or_insert((0, row.line)).0 += 1,
+                None => count(&mut left_out),
             }
         }
-        let told = left_out.map(|(rows, line)| Remark::LeftOut { rows, line });
+        let told = [
+            left_out.map(|(rows, line)| Remark::LeftOut { rows, line }),
+            unsettled.map(|(rows, line)| Remark::Unsettled { rows, line }),
+        ];
         Ok((readings, told))
     }
 

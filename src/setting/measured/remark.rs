@@ -14,6 +14,13 @@ pub enum Remark {
         /// The line of the first one.
         line: usize,
     },
+    /// Rows that a column says did not settle were left out.
+    Unsettled {
+        /// How many.
+        rows: usize,
+        /// The line of the first one.
+        line: usize,
+    },
     /// Readings at the same speeds were averaged.
     Averaged {
         /// How many readings.
@@ -63,17 +70,31 @@ pub enum Remark {
     },
 }
 
+/// Why rows are left out, of one row and of more.
+const NO_NUMBERS: [&str; 2] = ["it is no numbers", "they are no numbers"];
+const UNSETTLED: [&str; 2] = ["it did not settle", "they did not settle"];
+
+/// Tells of rows that are left out, the first of which is `line`, and why.
+fn left_out(
+    f: &mut fmt::Formatter<'_>,
+    (rows, line): (usize, usize),
+    [one, more]: [&str; 2],
+) -> fmt::Result {
+    match rows {
+        1 => write!(f, "line {line} is left out: {one}"),
+        rows => write!(
+            f,
+            "{rows} rows are left out: {more}; the first is line {line}"
+        ),
+    }
+}
+
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: f64| Shown((1000.0 * part).round() / 10.0);
         match self {
-            Self::LeftOut { rows: 1, line } => {
-                write!(f, "line {line} is left out: it is no numbers")
-            }
-            Self::LeftOut { rows, line } => write!(
-                f,
-                "{rows} rows are left out: they are no numbers; the first is line {line}"
-            ),
+            Self::LeftOut { rows, line } => left_out(f, (*rows, *line), NO_NUMBERS),
+            Self::Unsettled { rows, line } => left_out(f, (*rows, *line), UNSETTLED),
             Self::Averaged {
                 readings,
                 points,

@@ -313,3 +313,24 @@ fn forces_are_turned_into_the_unit_of_the_load() {
         assert!(error.help.unwrap().starts_with("give both in one unit"));
     }
 }
+
+/// As `slipmap measure` writes it: the error is no friction, and what did not settle is left out.
+#[test]
+fn rows_that_did_not_settle_are_left_out() {
+    let text = "v0,mu_k,mu_k_error,settled\n0.1,0.5,0.001,true\n0.2,0.9,0,false\n\
+        0.3,,,false\n0.4,0.3,0.002,true\n";
+    let read = curve(text, &options(""));
+    let found = read.table().unwrap();
+    assert_eq!(
+        (found.speeds(), found.mu_k()),
+        (&[0.1, 0.4][..], &[0.5, 0.3][..])
+    );
+    let told: Vec<String> = read.remarks.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        ["2 rows are left out: they did not settle; the first is line 3"]
+    );
+    let none = "v,mu,settled\n0.1,0.5,no\n0.2,0.9,0\n0.3,0.2,yes\n";
+    let error = curve(none, &options("")).table().unwrap_err();
+    assert!(error.help.unwrap().contains("did not settle"));
+}

@@ -55,6 +55,20 @@ const LOAD: [&str; 9] = [
     "auflast",
     "anpresskraft",
 ];
+/// Words for how far a column beside it may be off.
+const ERROR: [&str; 8] = [
+    "error",
+    "err",
+    "stderr",
+    "std",
+    "sd",
+    "uncertainty",
+    "fehler",
+    "unsicherheit",
+];
+/// The name of a column that says whether a row was measured while sliding, as `slipmap measure`
+/// writes it.
+const SETTLED: &str = "settled";
 /// The symbol of the load: a small one counts rows.
 const SYMBOL_OF_LOAD: &str = "N";
 
@@ -93,11 +107,19 @@ impl<'t> Title<'t> {
         same(self.text) || same(self.name)
     }
 
+    /// Whether the column says if a row settled.
+    pub(super) fn tells_settled(&self) -> bool {
+        self.name.eq_ignore_ascii_case(SETTLED)
+    }
+
     /// What the column holds, where the title has a common name for it.
     pub(super) fn role(&self) -> Option<Role> {
         let name = self.name.to_lowercase().replace("load cell", "");
         let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).collect();
         let has = |known: &[&str]| words.iter().any(|word| known.contains(word));
+        if has(&ERROR) {
+            return None;
+        }
         if self.name == SYMBOL_OF_LOAD || name.split_whitespace().any(is_normal_force) {
             return Some(Role::Load);
         }
@@ -135,6 +157,10 @@ mod tests {
             ("v_belt (mm/s)", Some(Speed), Some("mm/s")),
             ("Geschwindigkeit in mm/s", Some(Speed), Some("mm/s")),
             ("mu_k", Some(Mu), None),
+            ("mu_k_error", None, None),
+            ("v (std)", Some(Speed), Some("std")),
+            ("friction error [N]", None, Some("N")),
+            ("settled", None, None),
             ("µ [-]", Some(Mu), None),
             ("friction coefficient", Some(Mu), None),
             ("friction", Some(Mu), None),
