@@ -293,6 +293,7 @@ impl Motion {
     }
 
     /// Moves on by `length`; the polynomials hold for `radius`.
+    #[inline(always)]
     pub(super) fn go_on(&mut self, length: f64, radius: f64) {
         let order = self.step.order;
         let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);

@@ -13,6 +13,7 @@ const RELEASED: f64 = 1e4;
 
 impl Motion {
     /// The first event within `length`.
+    #[inline(always)]
     pub(super) fn first_event(&self, length: f64) -> Option<(f64, Event)> {
         let step = &self.step;
         let range = ..=step.order;

@@ -104,6 +104,7 @@ impl Motion {
     }
 
     /// [`Motion::advance`] where readings are held.
+    #[inline(never)]
     pub(super) fn advance_sampled(&mut self, horizon: f64) -> Option<Event> {
         let controlled = self.t >= self.parameters.switch_on;
         if controlled && self.t >= self.sampled.sampler.next {

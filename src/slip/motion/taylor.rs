@@ -15,6 +15,7 @@ const SPARE_TERMS: usize = 2;
 
 impl Motion {
     /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
+    #[inline]
     pub(super) fn expand(&mut self, controlled: bool) {
         let control = self.control(controlled);
         self.step.pull = control.pull();
@@ -32,6 +33,7 @@ impl Motion {
     /// The order that a step no longer than `limit` needs. Where delays or kinks end steps long
     /// before the series does, a lower one suffices. It is estimated from the step before;
     /// [`Self::free_length`] bounds the error whatever the order.
+    #[inline(always)]
     pub(super) fn order_within(&self, limit: f64) -> usize {
         let last = &self.step;
         let known = self.kink == SMOOTH && last.radius.is_finite();
@@ -46,6 +48,7 @@ impl Motion {
     }
 
     /// How long a step may be for its last terms to stay below the tolerance.
+    #[inline(always)]
     pub(super) fn free_length(&self) -> f64 {
         let step = &self.step;
         let (u, a) = (&step.u, &step.a);
@@ -68,7 +71,7 @@ impl Motion {
     }
 
     /// The sizes of u and a over which errors of a step count.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sizes(&self) -> [f64; 2] {
         let (u, a) = (self.step.u[0].abs(), self.step.a[0].abs());
         let speed = u.max(self.parameters.v0.abs()).max(SLOWEST);
@@ -76,7 +79,7 @@ impl Motion {
     }
 
     /// How far the friction of a step in slip holds to the tolerance, at most `length`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn resolved_by_friction(&self, length: f64) -> f64 {
         let step = &self.step;
         let [speed, _] = self.sizes();
