@@ -16,6 +16,7 @@ use super::digits::DigitsArgs;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::measure_text;
+use super::output::warn_beyond_curve;
 use super::run::{default_threads, parse_threads};
 use super::say;
 use super::signals::Signals;
@@ -68,6 +69,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let to = args.to()?;
     let spec = read_experiment(&args.experiment)?;
+    warn_beyond_curve(spec.setting.found_beyond_curve("v0", &spec.v0, &spec.units));
     let threads = args.threads.unwrap_or_else(default_threads);
     let failed = |error| failure(error, &signals);
     let settings = HowFar::of("settings chosen");

@@ -120,8 +120,36 @@ pub(super) fn print(
         ];
         row(out, &cells, &settled(point, measured.repeats))?;
     }
+    if measured.repeats > 1 {
+        print_repeats(out, &v0, measured, digits)?;
+    }
     print_settings(out, spec, measured, digits)?;
     tell_dimensionless(out, &spec.units)
+}
+
+/// Writes how far the repeats of every v0 are from one another, beside what is predicted.
+fn print_repeats(
+    out: &mut impl Write,
+    v0: &str,
+    measured: &Measurement,
+    digits: Digits,
+) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "standard deviation of one of {} repeats",
+        measured.repeats
+    )?;
+    row(out, &[v0, "found", "predicted"], "found/predicted")?;
+    for point in &measured.points {
+        let predicted = point.predicted.as_ref().map_or(f64::NAN, |of| of.error);
+        let cells = [digits.of(point.v0), small(point.scatter), small(predicted)];
+        let share = match predicted > 0.0 && point.scatter.is_finite() {
+            true => rounded(point.scatter / predicted, 2),
+            false => "none".to_owned(),
+        };
+        row(out, &cells, &share)?;
+    }
+    Ok(())
 }
 
 /// Writes the setting of every v0.

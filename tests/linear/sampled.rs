@@ -563,3 +563,54 @@ fn the_best_setting_of_short_samples_is_the_continuous_one() {
     });
     assert!(apart[1] > 0.0 && apart[1] < 0.7 * apart[0], "{apart:?}");
 }
+
+/// What noise of readings does, against integrals over all frequencies by a program of its own:
+/// (1/2π)∫|H(e^iθ)|² dθ of the mean, of u² and of u S.
+#[test]
+fn noise_is_that_of_all_frequencies() {
+    for ((b, a_v, a_n, h, m), (memory, late, samples), expected) in [
+        (
+            (-0.694, 0.0, -4.17, 0.05, 10),
+            (0.0, 0, 1000),
+            [0.0313809342428, 0.902040026604, -0.150123687881],
+        ),
+        (
+            (-0.694, 0.0, -4.17, 0.05, 10),
+            (0.0, 0, 20),
+            [0.283708353501, 0.902040026604, -0.150123687881],
+        ),
+        (
+            (-0.3, -0.33, 0.0, 0.1, 42),
+            (0.0, 0, 500),
+            [0.0467540970146, 0.160431754691, 0.0546898447273],
+        ),
+        (
+            (-0.3, -0.1, -1.2, 0.1, 6),
+            (0.3, 2, 64),
+            [0.140370423327, 0.504705060998, -0.10644588371],
+        ),
+        (
+            (0.2, -0.2, -0.8, 0.3, 5),
+            (-0.2, 0, 100),
+            [0.0985119486309, 0.718574057533, 0.3287611954],
+        ),
+    ] {
+        let of = Sampled {
+            groups: Groups::new(b, a_v, a_n),
+            h,
+            m,
+            memory,
+            late,
+        };
+        let model = of.model();
+        assert_eq!(model.n_unstable(m), 0, "{of:?}");
+        let found = model.noise(m, samples, -0.02).unwrap();
+        let found = [found.of_mean, found.u_square, found.u_signal];
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-9,
+                "{of:?}: {found} {expected}"
+            );
+        }
+    }
+}

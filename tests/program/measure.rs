@@ -75,6 +75,11 @@ fn answers_agree_and_files_stay() {
     let json: Value = program::json(&folder.run(&["measure", "noisy.toml", "--json"]));
     let points = json["points"].as_array().unwrap();
     assert_eq!((points.len(), &json["settled"]), (2, &Value::from(2)));
+    let told = out(&folder.run(&["measure", "noisy.toml"]));
+    assert!(
+        told.contains("standard deviation of one of 4 repeats\n"),
+        "{told}"
+    );
     let plain = folder.run(&["measure", "noisy.toml", "-o", "-"]);
     let rows = out(&plain);
     let rows: Vec<&str> = rows.lines().collect();

@@ -145,7 +145,8 @@ impl Experiment {
         setting.set(Parameter::V0, v0);
         let candidate = match self.spec.chosen {
             Chosen::Given => Some(self.given(setting, v0, stop)?),
-            Chosen::Best(gain) => self.best(&setting, gain, v0, stop)?,
+            // A slope that is too steep to be searched has no setting; other v0 may have one.
+            Chosen::Best(gain) => self.best(&setting, gain, v0, stop).unwrap_or(None),
         };
         let unit = self.spec.setting.oscillator()?.time_unit();
         let Some(candidate) = candidate else {

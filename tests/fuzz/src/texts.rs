@@ -1,7 +1,7 @@
 //! Texts: sweep files, case files, columns of a friction law, manifests.
 
 use slipmap::setting::measured::{CurveOptions, Measured};
-use slipmap::setting::{CaseSpec, SweepSpec};
+use slipmap::setting::{CaseSpec, ExperimentSpec, SweepSpec};
 use slipmap::store::tiles::Manifest;
 use slipmap::sweep::described::root::Provenance;
 use slipmap::sweep::{Plan, Shard, Todo};
@@ -20,7 +20,7 @@ pub(super) fn sweep(data: &[u8]) {
     }
 }
 
-/// A case file with its motion; the same text as columns of a friction law.
+/// A case file with its motion; the same text as an experiment, and as columns of a friction law.
 pub(super) fn case(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;
@@ -30,6 +30,10 @@ pub(super) fn case(data: &[u8]) {
             assert_eq!(spec.text, text);
             assert!(spec.case.motion().is_ok());
         }
+        Err(error) => check_error(&error, text),
+    }
+    match text.parse::<ExperimentSpec>() {
+        Ok(spec) => assert!(!spec.v0.is_empty() && spec.setting.law().is_some()),
         Err(error) => check_error(&error, text),
     }
     let measured = Measured::read(text, &CurveOptions::default());
