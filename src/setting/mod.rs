@@ -11,6 +11,7 @@
 //! - `command`: the command line for a setting
 //! - `curve_remark`: remarks on velocities at which a measured friction law says little
 //! - `expression`: expressions of named numbers
+//! - `feedback_table`: the table `[feedback]` of a case file: control by the return map
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `fields_asked`: the fields that are asked for, and where
 //! - `fit_keys`: the keys of what a fit says
@@ -67,6 +68,7 @@ mod checked;
 pub mod command;
 mod curve_remark;
 mod expression;
+pub(crate) mod feedback_table;
 pub mod field;
 mod fields_asked;
 pub mod fit_errors;

@@ -36,6 +36,7 @@ use crate::model::{Channel, Groups};
 pub use line::{SampledLine, multiple};
 pub use roots::SampledRoots;
 use step::Step;
+pub(crate) use step::recursion;
 
 /// The most samples in a delay or a latency.
 pub const MOST_SAMPLES: f64 = 1e9;
