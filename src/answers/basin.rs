@@ -12,6 +12,7 @@
 //! unstable state.
 
 use super::sobol;
+pub use super::tally::{Share, Tally};
 use crate::linear::MarginalTolerance;
 use crate::model::stop::Stop;
 use crate::setting::basin::{Basin, Over, SCRAMBLINGS};
@@ -38,10 +39,6 @@ pub const STUDENT_95: f64 = 2.131_449_545_559_323;
 /// P(none of n) ≤ 2/(2 + np),    P(none of 16 n) ≤ (2/(2 + np))¹⁶ = 5 %  at  16 np = 6.59
 /// ```
 pub const UNSEEN_95: f64 = 6.59;
-/// If fewer starts than this differ from the others, their spread is not reliable. Bounds of
-/// independent starts (Clopper and Pearson) then lie within [`UNSEEN_95`] of the counted number.
-const FEW: f64 = 5.0;
-
 /// The region of the starts, in units of the setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Region {
@@ -150,6 +147,20 @@ impl BasinProblem {
         }))
     }
 
+    /// The starts of a region from which the motion of `case` begins, drawn with `seed`; the end of
+    /// none is known before it is followed.
+    #[must_use]
+    pub(crate) fn of_case(case: Case, region: Region, starts: u32, seed: u32) -> Self {
+        Self {
+            case,
+            region,
+            abscissa: None,
+            unstable: false,
+            starts,
+            first: seed.wrapping_mul(SCRAMBLINGS),
+        }
+    }
+
     /// The same question with at most `most` starts, which are different ones. They are followed by
     /// collocation instead of Taylor's method, with an error of at least `tolerance` per step.
     #[must_use]
@@ -238,7 +249,7 @@ impl BasinProblem {
     /// ẋ and elongation of a start, or the phase of switch-on and 0.
     #[must_use]
     pub fn start(&self, place: Place) -> [f64; 2] {
-        let seed = self.first + place.scrambling;
+        let seed = self.first.wrapping_add(place.scrambling);
         let along = |dimension, [from, to]: [f64; 2]| {
             let part = sobol::part(place.number, dimension, seed);
             from + part * (to - from)
@@ -253,7 +264,7 @@ impl BasinProblem {
     /// What the noise of readings is drawn with from this start.
     fn seed(&self, place: Place) -> u64 {
         let each = u64::from(self.starts / SCRAMBLINGS);
-        let scrambling = u64::from(self.first + place.scrambling);
+        let scrambling = u64::from(self.first) + u64::from(place.scrambling);
         let number = scrambling * each + u64::from(place.number);
         self.case.feedback.readings.seed.wrapping_add(number)
     }
@@ -284,14 +295,13 @@ impl Follower<'_> {
         Self { stop, ..self }
     }
 
-    /// The outcome of a start, whose motion is shown to `observer`. The memory of another motion is
-    /// reused if there is one.
-    pub fn follow(
+    /// The motion of a start and its case, in the memory of another one if there is one. None
+    /// where it cannot be followed.
+    pub(crate) fn begin<'m>(
         &mut self,
         place: Place,
-        motion: &mut Option<Motion>,
-        observer: &mut impl Observer,
-    ) -> Outcome {
+        motion: &'m mut Option<Motion>,
+    ) -> Option<(&'m mut Motion, &Case)> {
         let [first, second] = self.asked.start(place);
         let case = &mut self.case;
         case.feedback.readings.seed = self.asked.seed(place);
@@ -308,75 +318,34 @@ impl Follower<'_> {
                     case.horizon = self.asked.case.horizon + first;
                 }
             }
-            Region::None => return Outcome::NoCycle,
+            Region::None => return None,
         }
         let begun = match motion {
             Some(motion) => case.restart(motion).map(|()| motion),
             none => case.motion().map(|new| none.insert(new)),
         };
         // An error here means that the motion cannot be followed.
-        begun.map_or(Outcome::Undecided, |motion| {
-            motion.heed(&self.stop);
-            case.follow(motion, self.asked.abscissa, observer).outcome
-        })
-    }
-}
-
-/// A share of the starts, with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share {
-    /// Between 0 and 1.
-    pub share: f64,
-    /// Its standard error, from the spread between scramblings. Where all or nearly all starts
-    /// agree, [`STUDENT_95`] times it is at least [`UNSEEN_95`] starts: parts of the region may
-    /// contain none.
-    pub error: f64,
-}
-
-/// How many starts of each scrambling had each outcome.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Tally([[u32; Outcome::ALL.len()]; SCRAMBLINGS as usize]);
-
-impl Tally {
-    /// Counts one more start.
-    pub fn count(&mut self, place: Place, outcome: Outcome) {
-        self.0[place.scrambling as usize][outcome as usize] += 1;
+        let motion = begun.ok()?;
+        motion.heed(&self.stop);
+        Some((motion, case))
     }
 
-    /// How many starts had an outcome.
-    #[must_use]
-    pub fn starts(&self, outcome: Outcome) -> u32 {
-        self.0.iter().map(|counts| counts[outcome as usize]).sum()
-    }
-
-    /// The share of starts with one of these outcomes; NaN without any start. All scramblings have
-    /// equally many.
-    #[must_use]
-    pub fn share(&self, of: &[Outcome]) -> Share {
-        let all: u32 = self.0.iter().flatten().sum();
-        let scramblings = f64::from(SCRAMBLINGS);
-        let each = f64::from(all) / scramblings;
-        let counted = |counts: &[u32; Outcome::ALL.len()]| {
-            let counted: u32 = of.iter().map(|outcome| counts[*outcome as usize]).sum();
-            f64::from(counted)
-        };
-        let sum: f64 = self.0.iter().map(counted).sum();
-        let mean = sum / scramblings;
-        let squared = |counts| {
-            let off = counted(counts) - mean;
-            off * off
-        };
-        let squares: f64 = self.0.iter().map(squared).sum();
-        let error = (squares / (scramblings * (scramblings - 1.0))).sqrt() / each;
-        let all = f64::from(all);
-        let least = match sum.min(all - sum) < FEW {
-            true => UNSEEN_95 / STUDENT_95,
-            false => 1.0,
-        };
-        Share {
-            share: sum / all,
-            error: error.max(least / all),
+    /// The outcome of a start, whose motion is shown to `observer`. The memory of another motion is
+    /// reused if there is one.
+    pub fn follow(
+        &mut self,
+        place: Place,
+        motion: &mut Option<Motion>,
+        observer: &mut impl Observer,
+    ) -> Outcome {
+        if self.asked.region == Region::None {
+            return Outcome::NoCycle;
         }
+        let abscissa = self.asked.abscissa;
+        let begun = self.begin(place, motion);
+        begun.map_or(Outcome::Undecided, |(motion, case)| {
+            case.follow(motion, abscissa, observer).outcome
+        })
     }
 }
 

@@ -7,9 +7,11 @@
 //! - `drawn_laws`: the laws that a fit allows, and for which of them a setting is stable
 //! - `margins`: margins of a setting, in its own units
 //! - `measure`: friction measured through control, at one v0 of an experiment
+//! - `reached`: whether a motion reaches sliding by a time
 //! - `robust_to_fit`: the setting that is most robust against the errors of a fit
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
+//! - `tally`: how many starts had which outcome, and shares of them
 //! - `trace`: a motion sampled over time, with its events
 //! - `trace_error`: why there is no trace of a motion
 //! - `vc`: the critical velocity of a setting by either protocol, the regime of a working velocity,
@@ -21,9 +23,11 @@ mod best_of_samples;
 pub mod drawn_laws;
 pub mod margins;
 pub mod measure;
+pub mod reached;
 pub mod robust_to_fit;
 pub mod samples;
 mod sobol;
+mod tally;
 pub mod trace;
 mod trace_error;
 pub mod vc;

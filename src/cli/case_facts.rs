@@ -1,8 +1,9 @@
 //! The facts of the case of one motion: `plan` prints them before it is simulated, `info` from its
 //! trace.
 
-use crate::model::Control;
+use crate::model::{Control, MapModel, ReturnMap};
 use crate::report::numbers::grouped;
+use crate::setting::feedback_table::{MODELS, RETURN_MAP};
 use crate::setting::{CaseSpec, Parameter};
 use crate::slip::case::Start;
 use crate::slip::programme::Corner;
@@ -20,8 +21,11 @@ pub(super) struct CaseFacts {
     title: String,
     /// Name of the friction law.
     friction: &'static str,
-    /// Which gains are not 0: `none`, `velocity`, `load` or `both`.
+    /// Which gains are not 0: `none`, `velocity`, `load` or `both`; or `return-map`.
     control: &'static str,
+    /// Control by the return map; null under delayed feedback.
+    #[schema(required)]
+    return_map: Option<ReturnMapFacts>,
     /// Parameters by name.
     #[serde(serialize_with = "as_object")]
     #[schema(value_type = BTreeMap<String, f64>)]
@@ -45,6 +49,36 @@ pub(super) struct CaseFacts {
     /// End of the samples; null where they end when the outcome is known.
     #[schema(required)]
     until: Option<f64>,
+}
+
+/// Control by the return map.
+#[derive(Debug, Serialize, ToSchema)]
+struct ReturnMapFacts {
+    /// The largest change of the load.
+    amplitude: f64,
+    /// `exact` or `reconstructed`.
+    model: &'static str,
+    /// The most readings of the record; null for the exact model.
+    #[schema(required)]
+    record: Option<u32>,
+    /// The largest pulse of the load in it; null for the exact model.
+    #[schema(required)]
+    pulse: Option<f64>,
+}
+
+impl ReturnMapFacts {
+    fn of(control: ReturnMap) -> Self {
+        let record = match control.model {
+            MapModel::Reconstructed(record) => Some(record),
+            MapModel::Law { .. } | MapModel::Known(_) => None,
+        };
+        Self {
+            amplitude: control.amplitude,
+            model: MODELS[usize::from(record.is_some())],
+            record: record.map(|record| record.readings),
+            pulse: record.map(|record| record.pulse),
+        }
+    }
 }
 
 /// A corner of the programme of the pulling velocity.
@@ -88,7 +122,11 @@ impl CaseFacts {
         Self {
             title: spec.title.clone(),
             friction: setting.law().map_or("", |law| law.name()),
-            control: control(setting.control()),
+            control: match case.feedback.return_map {
+                Some(_) => RETURN_MAP,
+                None => control(setting.control()),
+            },
+            return_map: case.feedback.return_map.map(ReturnMapFacts::of),
             parameters: parameters().map(|p| (p.name(), setting.get(p))).collect(),
             units: of_parameters.chain(of_quantities).collect(),
             start: StartFacts {
@@ -133,6 +171,19 @@ impl CaseFacts {
         }
         rows.row("friction", self.friction)?;
         rows.row("control", self.control)?;
+        if let Some(map) = &self.return_map {
+            let told = format!(
+                "{}, model {}",
+                self.with_unit("force", map.amplitude),
+                map.model
+            );
+            rows.row("amplitude", told)?;
+            if let (Some(record), Some(pulse)) = (map.record, map.pulse) {
+                let pulse = self.with_unit("force", pulse);
+                let told = format!("{record} readings at most, pulses of up to {pulse}");
+                rows.row("record", told)?;
+            }
+        }
         for (name, value) in &self.parameters {
             rows.row(
                 "fixed",

@@ -13,6 +13,8 @@
 //! - `cell`: a cell of a map instead of flags or a case file
 //! - `cgroup`: limits on memory of control groups
 //! - `colours`: `--color`, for help, messages and previews
+//! - `compare`: `slipmap compare`
+//! - `compared_text`: the output of `slipmap compare` for people
 //! - `completions`: `slipmap completions`
 //! - `control`: controls by name
 //! - `corners`: the flag `--programme`: the corners of v0 in time
@@ -53,6 +55,7 @@
 //! - `read_map`: `slipmap read-map`
 //! - `reference`: `slipmap reference`
 //! - `reproduce`: `slipmap reproduce`: the files that it may write, and its output
+//! - `return_map_args`: the flags of control by the return map
 //! - `run`: `slipmap run`
 //! - `say`: messages to the user
 //! - `schema`: `slipmap schema`
@@ -88,6 +91,8 @@ mod case_facts;
 mod cell;
 mod cgroup;
 mod colours;
+mod compare;
+mod compared_text;
 mod completions;
 mod control;
 mod corners;
@@ -128,6 +133,7 @@ mod print_args;
 mod read_map;
 mod reference;
 mod reproduce;
+mod return_map_args;
 mod run;
 mod say;
 mod schema;
@@ -245,6 +251,8 @@ commands! {
     Vc(vc, described),
     /// The share of starts from which control ends in sliding, with its error
     Basin(basin, described),
+    /// Control by the return map beside delayed feedback: shares of starts that reach sliding
+    Compare(compare, described),
     /// Measure friction through control: means of the elongation at many v0, with their errors
     Measure(measure, described),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome

@@ -3,7 +3,9 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use crate::letter::{GENERATOR, LetterError, Reproduction, Verdict, Workshop, reproduce};
+use crate::letter::{
+    GENERATOR, GENERATOR_OF_COMPARE, LetterError, Reproduction, Verdict, Workshop, reproduce,
+};
 use crate::report::progress::Progress;
 use crate::store::{Output, StoreError, regular};
 use crate::sweep::events::Attended;
@@ -172,6 +174,11 @@ fn page(args: &Args) -> Result<Option<&Path>, Failure> {
         None => Path::new(PAGE),
         Some(path) => path,
     };
+    page_named(path).map(Some)
+}
+
+/// The page of this name, which may replace only an earlier page.
+pub(super) fn page_named(path: &Path) -> Result<&Path, Failure> {
     let shown = path.display();
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
@@ -195,13 +202,18 @@ fn page(args: &Args) -> Result<Option<&Path>, Failure> {
             "it is left as it is; remove it first, or write elsewhere with -o",
         ));
     }
-    Ok(Some(path))
+    Ok(path)
 }
 
 /// Whether a file is an earlier page.
 fn is_page(path: &Path) -> bool {
     let head = regular::head(path, HEAD);
-    head.is_ok_and(|head| String::from_utf8_lossy(&head).contains(GENERATOR))
+    head.is_ok_and(|head| {
+        let head = String::from_utf8_lossy(&head);
+        [GENERATOR, GENERATOR_OF_COMPARE]
+            .iter()
+            .any(|generator| head.contains(generator))
+    })
 }
 
 fn failure(error: LetterError, args: &Args, signals: &Signals) -> Failure {

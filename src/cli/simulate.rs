@@ -33,6 +33,7 @@ use super::output::{
 };
 use super::parameters::ParameterArgs;
 use super::plot;
+use super::return_map_args::ReturnMapArgs;
 use super::say::{self, ForPeople};
 use super::setting::SettingArgs;
 use super::signals::Signals;
@@ -52,6 +53,8 @@ pub(super) struct Args {
     parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
     start: StartArgs,
+    #[command(flatten)]
+    return_map: ReturnMapArgs,
     #[command(flatten)]
     cell: CellArgs,
     #[command(flatten)]
@@ -209,16 +212,18 @@ impl Args {
 
     /// The text of a case file for a setting, with the start and the end of the flags.
     fn case_of(&self, setting: &Setting, units: &Units) -> Result<String, Failure> {
-        self.start
-            .case(&setting_text(setting, units, |_| true), units)
+        let setting = setting_text(setting, units, |_| true);
+        let feedback = self.return_map.table(units)?;
+        self.start.case(&(setting + &feedback), units)
     }
 
     /// Checks that no flags that it says itself accompany a case, a map or a setting.
     fn check_alone(&self) -> Result<(), Failure> {
         let flags = self.parameters.any_but(&[]);
+        let of_motion = self.start.any() || self.return_map.any();
         match (&self.case, &self.cell.map) {
-            (Some(_), _) => alone("CASE.toml", flags || self.start.any()),
-            (None, Some(_)) => alone("--map", flags || self.start.any()),
+            (Some(_), _) => alone("CASE.toml", flags || of_motion),
+            (None, Some(_)) => alone("--map", flags || of_motion),
             (None, None) if self.file.is_given() => alone("--setting", flags),
             (None, None) => Ok(()),
         }

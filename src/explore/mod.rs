@@ -10,6 +10,8 @@
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
+//! - [`comparison`]: control by the return map beside delayed feedback; [`route`]: how low v0 may
+//!   become under either
 //! - [`best`]: the settings of fastest decay, with all about the recommended one; [`robust`]: what
 //!   it is to stand; [`best_answer`]: the same as plain data
 //! - [`measure`]: an experiment that measures friction through control, at all of its v0
@@ -34,6 +36,7 @@ pub mod best;
 pub mod best_answer;
 pub mod chart;
 pub mod chart_bytes;
+pub mod comparison;
 pub mod encoded;
 pub mod given_setting;
 pub mod known;
@@ -46,6 +49,7 @@ pub mod motion_bytes;
 pub mod point;
 pub mod problem;
 pub mod robust;
+pub mod route;
 pub mod stability;
 pub mod stable_line;
 pub mod systems;

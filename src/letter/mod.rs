@@ -19,7 +19,7 @@
 //!
 //! - `one_variable`: integrals and minima of functions of one variable
 //! - `claim`: a claim, the values by which it is judged, its verdict
-//! - `page`: the page; the only file that imports maud
+//! - `page`: the page, and pages of other results; the only file that imports maud
 //! - `kept_picture`: pictures in a folder that is kept, and whether one there is such a picture
 //! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
 //!   and read
@@ -51,7 +51,7 @@ use crate::store::StoreError;
 use crate::sweep::RunError;
 use crate::text::SpecError;
 pub(crate) use claim::{Claim, Verdict};
-pub(crate) use page::GENERATOR;
+pub(crate) use page::{GENERATOR, GENERATOR_OF_COMPARE, Sheet};
 pub(crate) use workshop::{Figure, Workshop};
 
 /// The letter with what this program finds.

@@ -1,5 +1,6 @@
-//! The letter and the results as one page of HTML. Styles and pictures are part of it; nothing is
-//! loaded and no script is run. The only file that imports maud.
+//! The letter and the results as one page of HTML, and other results with one picture and a table.
+//! Styles and pictures are part of it; nothing is loaded and no script is run. The only file that
+//! imports maud.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -7,6 +8,9 @@ use super::{Claim, Figure, Reproduction, Verdict};
 
 /// The generator named in the head of the page.
 pub(crate) const GENERATOR: &str = "slipmap reproduce";
+
+/// That of a comparison of methods of control.
+pub(crate) const GENERATOR_OF_COMPARE: &str = "slipmap compare";
 
 const STYLE: &str = include_str!("page.css");
 
@@ -158,6 +162,73 @@ impl Reproduction {
                 }
             }
         }
+    }
+}
+
+/// A page of one result.
+pub(crate) struct Sheet<'a> {
+    /// The generator named in its head.
+    pub generator: &'a str,
+    /// The title.
+    pub title: &'a str,
+    /// What is shown, in paragraphs.
+    pub text: &'a [String],
+    /// The program and the command, in one line each.
+    pub made: &'a [String],
+    /// The picture, if there is one.
+    pub svg: Option<&'a str>,
+    /// The names of columns, and rows.
+    pub head: &'a [String],
+    /// As many texts as there are columns.
+    pub rows: &'a [Vec<String>],
+}
+
+impl Sheet<'_> {
+    /// The page.
+    #[must_use]
+    pub(crate) fn page(&self) -> String {
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content=(self.generator);
+                    meta name="color-scheme" content="light dark";
+                    title { (self.title) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    header {
+                        h1 { (self.title) }
+                        @for text in self.text { p { (text) } }
+                        @for made in self.made { p.made { (made) } }
+                    }
+                    main {
+                        @if let Some(svg) = self.svg {
+                            figure {
+                                div.picture role="group" tabindex="0" aria-label=(self.title) {
+                                    (PreEscaped(svg))
+                                }
+                            }
+                        }
+                        div.sheet tabindex="0" role="group" aria-label="the numbers" {
+                            table {
+                                thead {
+                                    tr { @for name in self.head { th scope="col" { (name) } } }
+                                }
+                                tbody {
+                                    @for row in self.rows {
+                                        tr { @for text in row { td.number { (text) } } }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        };
+        page.into_string()
     }
 }
 

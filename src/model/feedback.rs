@@ -10,6 +10,7 @@
 //! it by 1 + Tλ. Limits clip v and N as they are commanded, before a lag.
 
 use super::oscillator::{Control, Oscillator};
+use super::return_map::ReturnMap;
 
 /// What happens to the signal between the sensor and the gains.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -146,8 +147,11 @@ pub struct Feedback {
     pub lags: Lags,
     /// Limits of the actuators, in the units of v0 and N0.
     pub limits: ActuatorLimits,
-    /// How the elongation is read; without effect where no gain acts.
+    /// How the elongation is read; without effect where no control acts.
     pub readings: Readings,
+    /// Control by the return map, in the place of the delayed feedback: with readings, without
+    /// gains, memory, latency and limits.
+    pub return_map: Option<ReturnMap>,
 }
 
 impl Feedback {
@@ -167,6 +171,12 @@ impl Feedback {
         Self { channel, ..self }
     }
 
+    /// Whether a gain acts, or control by the return map.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.gains.act() || self.return_map.is_some()
+    }
+
     /// Whether memory or latency have an effect: the signal then depends on more of the past than
     /// one delay.
     #[must_use]
@@ -177,7 +187,7 @@ impl Feedback {
     /// Whether readings are held, and used.
     #[must_use]
     pub fn is_sampled(&self) -> bool {
-        self.gains.act() && self.readings.acts()
+        self.acts() && self.readings.acts()
     }
 
     /// How long it remembers: τ/(1 − |R|) + δ, which is one delay without memory and latency, and
@@ -229,6 +239,7 @@ impl Feedback {
                 resolution: self.readings.resolution / length,
                 seed: self.readings.seed,
             },
+            return_map: self.return_map.map(|of| of.over(force)),
         }
     }
 }

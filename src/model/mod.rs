@@ -23,6 +23,7 @@
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
 //! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical
 //!   stiffness
+//! - `return_map`: control by the return map, with which the letter compares its own
 //! - `series`: polynomials in time, their first zeros
 //! - `stop`: a flag that ends computations nobody waits for any more
 //! - `table`: a monotone cubic curve through measured points
@@ -36,6 +37,7 @@ pub mod known_cases;
 pub mod law;
 mod oscillator;
 pub(crate) mod rate_and_state;
+mod return_map;
 pub(crate) mod series;
 pub mod stop;
 pub mod table;
@@ -46,4 +48,5 @@ pub use groups::Groups;
 pub use law::FrictionLaw;
 pub use oscillator::{Control, Dashpots, Oscillator, SlidingPoint};
 pub use rate_and_state::{RateAndState, StateGroups};
+pub use return_map::{MapModel, Record, Recursion, ReturnMap};
 pub use table::Table;

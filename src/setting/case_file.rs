@@ -19,6 +19,13 @@
 //! alpha_v = -0.33
 //! tau = 4.15
 //!
+//! [feedback]                      # optional: control by the return map, in the place of gains
+//! control = "return-map"          # with sample_time in [fixed]
+//! amplitude = 0.5                 # the largest change of the load
+//! model = "reconstructed"         # or "exact", by default: from the friction law
+//! record = 20                     # readings of the record from which it is reconstructed
+//! pulse = 0.01                    # the largest pulse of the load in it
+//!
 //! [start]                         # optional: at t = 0, and the elongation before
 //! x_dot0 = 0.3535                 # v0 by default
 //! a0 = 0.294                      # that of sliding at v0 by default, μ_K(v0) N0/κ
@@ -41,6 +48,7 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 
+use super::feedback_table::GivenFeedback;
 use super::given::GivenParameters;
 use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
@@ -141,7 +149,8 @@ pub(crate) fn is_case_file(text: &str) -> bool {
     let entries = entries(document.get_ref(), "");
     let has = |keys: &[&str]| entries.iter().any(|entry| keys.contains(&entry.key));
     !has(&OF_SWEEPS)
-        && (has(&["switch_on", "trace", "programme"]) || text.parse::<CaseSpec>().is_ok())
+        && (has(&["switch_on", "trace", "programme", "feedback"])
+            || text.parse::<CaseSpec>().is_ok())
 }
 
 impl CaseSpec {
@@ -212,6 +221,7 @@ impl std::str::FromStr for CaseSpec {
         let switch_on = document.take("switch_on", |entry| read_switch_on(entry, &units));
         let trace = document.take("trace", |entry| read_trace(entry, &units));
         let trace = trace.unwrap_or_default();
+        let feedback = document.take("feedback", |entry| GivenFeedback::read(entry, &units));
         let programme = document.take("programme", |entry| GivenProgramme::read(entry, &units));
         let simulation = Simulation::of(&mut document, &units);
         document.finish()?;
@@ -221,7 +231,7 @@ impl std::str::FromStr for CaseSpec {
             case: case(
                 &document,
                 &given,
-                (&simulation, programme),
+                (&simulation, programme, feedback),
                 switch_on,
                 &setting,
             )?,
@@ -306,7 +316,7 @@ fn setting(given: &GivenParameters) -> Result<Setting, SpecError> {
 fn case(
     document: &Document,
     given: &GivenParameters,
-    (simulation, programme): (&Simulation, Option<GivenProgramme>),
+    (simulation, programme, feedback): (&Simulation, Option<GivenProgramme>, Option<GivenFeedback>),
     switch_on: Option<f64>,
     setting: &Setting,
 ) -> Result<Case, SpecError> {
@@ -316,8 +326,10 @@ fn case(
         let message = "switch_on: switch_on_phase says when control begins to act";
         return Err(SpecError::at(place.clone(), message).help("leave one of them out"));
     }
+    let steered = feedback.as_ref();
+    let return_map = steered.map(|of| of.control(setting.get(Parameter::NormalLoad)));
     let case = simulation
-        .case(setting, switch_on.unwrap_or(0.0))
+        .case_under(setting, switch_on.unwrap_or(0.0), return_map)
         .map_err(|error| given.refused(&error))?
         .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
     let name = match phase {
@@ -331,20 +343,38 @@ fn case(
         Some(given) => given.added_to(case, simulation, document.value("horizon"))?,
         None => case,
     };
-    case.motion().map_err(|error| refused(given, &error))?;
+    case.motion()
+        .map_err(|error| refused(given, steered, &error))?;
     Ok(case)
 }
 
-/// An error of the model, at the place of the parameter if the file gives it.
-fn refused(given: &GivenParameters, error: &CaseError) -> SpecError {
-    let parameter = match error {
-        CaseError::Model(error) => Parameter::from_name(error.parameter),
-        CaseError::NoCycle(_) => Some(Parameter::SwitchOnPhase),
+/// An error of the model, at the place of the parameter or key if the file gives it.
+fn refused(
+    given: &GivenParameters,
+    feedback: Option<&GivenFeedback>,
+    error: &CaseError,
+) -> SpecError {
+    let name = match error {
+        CaseError::Model(error) => error.parameter,
+        CaseError::NoCycle(_) => Parameter::SwitchOnPhase.name(),
+        CaseError::SampleTime { .. } => Parameter::SampleTime.name(),
+        CaseError::BesideReturnMap { name, .. } => name,
+        CaseError::NoRecursion(_) => "record",
     };
+    let place = Parameter::from_name(name).and_then(|p| given.place(p));
+    let of_feedback = || feedback.and_then(|feedback| feedback.place(name));
     SpecError {
         message: error.to_string(),
-        span: parameter.and_then(|p| given.place(p)).cloned(),
-        help: None,
+        span: place.or_else(of_feedback).cloned(),
+        help: match error {
+            CaseError::Model(of) if of.parameter == "sample_time" && feedback.is_some() => {
+                Some("the time from reading to reading, in [fixed]: sample_time = 0.9".into())
+            }
+            CaseError::BesideReturnMap { .. } => {
+                Some("leave it out; `amplitude` bounds the load".into())
+            }
+            _ => None,
+        },
     }
 }
 

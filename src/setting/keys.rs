@@ -336,10 +336,16 @@ pub(crate) const TOLERANCE: [Key; 1] = [key(
 )];
 
 /// The keys of a case file.
-pub(crate) const CASE: [Key; 12] = [
+pub(crate) const CASE: [Key; 13] = [
     TITLE,
     needed("friction", "a table", "the friction law"),
     FIXED,
+    key(
+        "feedback",
+        "a table",
+        "delayed feedback by the gains of `[fixed]`",
+        "control by the return map",
+    ),
     key(
         "switch_on",
         "a time from 0 to 1e12, or false",
@@ -367,6 +373,38 @@ pub(crate) const CASE: [Key; 12] = [
         "until when the motion is written, and how densely",
     ),
     UNITS_KEY,
+];
+
+/// The keys of `[feedback]`.
+pub(crate) const FEEDBACK: [Key; 5] = [
+    needed(
+        "control",
+        "\"return-map\"",
+        "at each reading, `sample_time` apart, the load is set to what brings the block to sliding",
+    ),
+    needed(
+        "amplitude",
+        "a load greater than 0 and less than normal_load",
+        "the largest change of the load; where more is needed there is none",
+    ),
+    key(
+        "model",
+        "\"exact\" or \"reconstructed\"",
+        "\"exact\"",
+        "where the return map comes from: the friction law, or a record near sliding",
+    ),
+    key(
+        "record",
+        "a whole number from 7 to 100 000",
+        "20",
+        "the length of the record in readings; it ends at the first stop",
+    ),
+    key(
+        "pulse",
+        "a load greater than 0 and less than normal_load",
+        "0.01 normal_load",
+        "the largest pulse of the load in the record",
+    ),
 ];
 
 /// The keys of `[[programme]]`.
@@ -487,6 +525,7 @@ mod tests {
     use super::super::simulation::Simulation;
     use super::*;
     use crate::linear::MarginalTolerance;
+    use crate::model::Record;
 
     fn row<'a>(keys: &'a [Key], name: &str) -> &'a Key {
         keys.iter().find(|key| key.name == name).unwrap()
@@ -534,6 +573,16 @@ mod tests {
             assert!(row(&SWEEP, "protocol").takes.contains(name));
         }
         assert!(row(&SWEEP, "phase").meaning.contains(&PHASES.to_string()));
+        assert_eq!(
+            row(&FEEDBACK, "record").default,
+            Some(&*Record::READINGS.to_string())
+        );
+        assert!(
+            row(&FEEDBACK, "pulse")
+                .default
+                .unwrap()
+                .starts_with(&Record::PULSE.to_string())
+        );
         assert_eq!(LARGEST, 1e12);
     }
 
@@ -550,6 +599,7 @@ mod tests {
             &UNITS,
             &TOLERANCE,
             &CASE,
+            &FEEDBACK,
             &PROGRAMME,
             &TRACE,
             &EXPERIMENT_FILE,

@@ -50,6 +50,7 @@ impl Setting {
                 resolution: self.get(Parameter::Resolution),
                 seed: 0,
             },
+            return_map: None,
         }
     }
 

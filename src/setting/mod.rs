@@ -12,6 +12,7 @@
 //! - `curve_remark`: remarks on velocities at which a measured friction law says little
 //! - `experiment`: an experiment that measures friction through control, read and checked once
 //! - `expression`: expressions of named numbers
+//! - `feedback_table`: the table `[feedback]` of a case file: control by the return map
 //! - `field`: a row for every field: name, meaning, unit, type, source, meaning of a missing value
 //! - `fields_asked`: the fields that are asked for, and where
 //! - `fit_keys`: the keys of what a fit says
@@ -69,6 +70,7 @@ pub mod command;
 mod curve_remark;
 pub mod experiment;
 mod expression;
+pub(crate) mod feedback_table;
 pub mod field;
 mod fields_asked;
 pub mod fit_errors;

@@ -7,7 +7,7 @@ use std::ops::{Range, RangeInclusive};
 use super::parameter::{LARGEST, Parameter};
 use super::units::Units;
 use super::values::Setting;
-use crate::model::{ModelError, Oscillator};
+use crate::model::{ModelError, Oscillator, ReturnMap};
 use crate::slip::case::{Case, Start};
 use crate::slip::motion::Accuracy;
 use crate::slip::programme::Programme;
@@ -160,6 +160,17 @@ impl Simulation {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn case(&self, setting: &Setting, switch_on: f64) -> Result<Option<Case>, ModelError> {
+        self.case_under(setting, switch_on, None)
+    }
+
+    /// The motion of `setting` as in [`Simulation::case`], under control by a return map if there
+    /// is one.
+    pub(crate) fn case_under(
+        &self,
+        setting: &Setting,
+        switch_on: f64,
+        return_map: Option<ReturnMap>,
+    ) -> Result<Option<Case>, ModelError> {
         setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
         let Some(law) = setting.friction_law()? else {
             return Ok(None);
@@ -179,8 +190,11 @@ impl Simulation {
                 }),
             },
         };
-        // Without gains there is nothing to switch on.
-        let switch_on = match setting.control().act() {
+        let mut feedback = setting.feedback();
+        feedback.readings.seed = self.seed;
+        feedback.return_map = return_map;
+        // Without control there is nothing to switch on.
+        let switch_on = match feedback.acts() {
             true => phase.unwrap_or(switch_on),
             false => f64::INFINITY,
         };
@@ -190,8 +204,6 @@ impl Simulation {
             0.0
         };
         let horizon = self.horizon_after(begun, &oscillator);
-        let mut feedback = setting.feedback();
-        feedback.readings.seed = self.seed;
         Ok(Some(Case {
             oscillator,
             law,

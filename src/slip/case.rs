@@ -4,12 +4,12 @@ use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_rele
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
 use super::programme::Programme;
-use super::readings;
+use super::record::NoRecursion;
+use super::return_map::Controller;
 use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
-use crate::model::{
-    ActuatorLimits, Channel, Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint,
-};
+use crate::model::{Control, Feedback, FrictionLaw, ModelError, Oscillator, SlidingPoint};
+use crate::text::Shown;
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
 ///
@@ -90,6 +90,29 @@ pub enum CaseError {
             than the past that is kept",
     })]
     NoCycle(NoCycle),
+    /// Readings at such times do not tell the velocity to control by the return map.
+    #[error(
+        "sample_time = {}: such readings do not tell the velocity, which control by the \
+         return map needs; those from {} to {} do",
+        Shown(*.given), Shown(.told[0]), Shown(.told[1])
+    )]
+    SampleTime {
+        /// The time that is given.
+        given: f64,
+        /// The shortest and the longest time that tells it, at every v0.
+        told: [f64; 2],
+    },
+    /// What is fed back, or limits it, beside control by the return map.
+    #[error("{name} = {} does not go with control by the return map", Shown(*.value))]
+    BesideReturnMap {
+        /// The name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A record does not tell the return map.
+    #[error("record: {0}")]
+    NoRecursion(#[from] NoRecursion),
 }
 
 /// The units in which a [`Motion`] computes.
@@ -141,7 +164,7 @@ impl Case {
     /// from.
     pub fn motion(&self) -> Result<Motion, CaseError> {
         self.check()?;
-        let p = self.parameters();
+        let p = self.steered(self.parameters())?;
         let mut motion = match self.start {
             Start::State { x_dot0, a0 } => {
                 let (u, a) = self.dimensionless(x_dot0, a0);
@@ -176,7 +199,7 @@ impl Case {
     /// As [`Case::motion`].
     pub fn restart(&self, motion: &mut Motion) -> Result<(), CaseError> {
         self.check()?;
-        let p = self.parameters();
+        let p = self.steered(self.parameters())?;
         match self.start {
             Start::State { x_dot0, a0 } => {
                 let (u, a) = self.dimensionless(x_dot0, a0);
@@ -225,74 +248,23 @@ impl Case {
 
     fn parameters(&self) -> Parameters {
         let units = self.units();
+        let mut feedback = self.feedback.dimensionless(&self.oscillator);
+        if feedback.return_map.is_some() {
+            // What is held is the change of the load itself; it depends on two readings.
+            feedback.gains.alpha_n = 1.0;
+            feedback.tau = 2.0 * feedback.readings.sample_time;
+        }
         Parameters {
             law: self.law.clone(),
             velocity_unit: units.velocity,
             dashpots: self.oscillator.dashpot_ratios(),
-            feedback: self.feedback.dimensionless(&self.oscillator),
+            feedback,
             v0: self.v0 / units.velocity,
-            switch_on: match self.feedback.gains.act() {
+            switch_on: match self.feedback.acts() {
                 true => self.switch_on / units.time,
                 false => f64::INFINITY,
             },
         }
-    }
-
-    fn check(&self) -> Result<(), ModelError> {
-        ModelError::positive("v0", self.v0)?;
-        let Feedback {
-            gains,
-            tau,
-            channel: Channel { memory, latency },
-            ..
-        } = self.feedback;
-        let (x_dot0, a0) = self.initial_state();
-        for (name, value) in [
-            ("alpha_v", gains.alpha_v),
-            ("alpha_n", gains.alpha_n),
-            ("x_dot0", x_dot0),
-            ("a0", a0),
-        ] {
-            ModelError::check(name, value, "finite", value.is_finite())?;
-        }
-        let delayed = tau.is_finite() && (tau > 0.0 || (!gains.act() && tau >= 0.0));
-        ModelError::check(
-            "tau",
-            tau,
-            "finite and greater than 0 under control",
-            delayed,
-        )?;
-        let within = memory.abs() < 1.0;
-        ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
-        let known = latency.is_finite() && latency >= 0.0;
-        ModelError::check("latency", latency, "finite and at least 0", known)?;
-        self.check_readings()?;
-        let ActuatorLimits { velocity, load } = self.feedback.limits;
-        let n0 = self.oscillator.normal_load();
-        for (name, value, [least, most]) in [("v0", self.v0, velocity), ("normal_load", n0, load)] {
-            let within = least < value && value < most;
-            ModelError::check(name, value, "within the limits of its actuator", within)?;
-        }
-        self.programme
-            .check(velocity)
-            .map_err(|wrong| wrong.error)?;
-        let switch_on = self.switch_on;
-        if switch_on != f64::INFINITY {
-            ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
-        }
-        ModelError::positive("horizon", self.horizon)?;
-        let tolerance = self.accuracy.tolerance;
-        let range = (1e-15..=1e-3).contains(&tolerance);
-        ModelError::check("tolerance", tolerance, "between 1e-15 and 1e-3", range)?;
-        Ok(())
-    }
-
-    /// Checks how the elongation is read.
-    ///
-    /// # Errors
-    /// When a value is out of its range, or a delay no whole multiple of the sample time.
-    pub(crate) fn check_readings(&self) -> Result<(), ModelError> {
-        readings::check(&self.feedback)
     }
 
     /// Sliding at the last v0 under the control that acts in the end, in the units of a motion.
@@ -327,6 +299,12 @@ impl Case {
     /// When v0 is out of range.
     pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
         let unit = self.oscillator.time_unit();
+        if self.feedback.return_map.is_some() {
+            let known = self.steered(self.parameters()).ok();
+            let last = self.last_v0() / self.units().velocity;
+            let found = known.and_then(|p| Controller::of(&p)?.stable_abscissa(&p, last));
+            return Ok(found.map(|abscissa| abscissa / unit));
+        }
         let sliding = self.sliding()?;
         Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))
     }

@@ -112,7 +112,7 @@ pub(crate) fn restart_after_release(
         return Err(NoCycle::NoStickSlip);
     }
     let cycle = follow_cycle(motion).ok_or(NoCycle::NoStickSlip)?;
-    let phase = if parameters.feedback.gains.act() {
+    let phase = if parameters.feedback.acts() {
         phase.rem_euclid(cycle.period())
     } else {
         f64::INFINITY

@@ -46,7 +46,7 @@ mod events;
 mod feedback;
 mod held;
 mod held_signal;
-mod parameters;
+pub(in crate::slip) mod parameters;
 mod programmed;
 mod sampled;
 mod stick;
@@ -143,7 +143,7 @@ impl Motion {
         (u, a): (f64, f64),
         ([mut history, mut signal], mut sampled): ([History; 2], Sampled),
     ) -> Self {
-        if !parameters.feedback.gains.act() {
+        if !parameters.feedback.acts() {
             // Nothing is fed back, so memory and latency have no effect.
             parameters.feedback.channel = Channel::default();
         }
@@ -312,7 +312,8 @@ impl Motion {
     #[must_use]
     pub fn sliding_elongation(&self) -> f64 {
         let (p, v0) = (&self.parameters, self.last_v0());
-        p.law.mu_k(v0 * p.velocity_unit) + p.dashpots.viscous * v0
+        let load = 1.0 + self.load_in_the_end();
+        p.law.mu_k(v0 * p.velocity_unit) * load + p.dashpots.viscous * v0
     }
 
     /// The elongation at which a stuck block without control is released forwards, pulled at v0.

@@ -54,6 +54,9 @@ pub(crate) fn check(feedback: &Feedback) -> Result<(), ModelError> {
     if !feedback.is_sampled() {
         return Ok(());
     }
+    if feedback.return_map.is_some() {
+        return Ok(());
+    }
     let times = |time: f64| multiple(time, sample_time);
     let whole = times(tau).is_some_and(|times| times <= MOST_READINGS);
     let allowed = "a whole multiple of sample_time, at least one and at most a million (a longer \
@@ -86,6 +89,12 @@ fn gaussian(seed: u64, number: i64) -> f64 {
     let place = mixed(seed).wrapping_add(number.cast_unsigned().wrapping_mul(2));
     let part = |i: u64| (mixed(place.wrapping_add(i)) >> 11) as f64 / (1_u64 << 53) as f64;
     normals([part(0), part(1)])[0]
+}
+
+/// A number between 0 and 1 for reading `number` under this seed, all equally likely.
+pub(super) fn part(seed: u64, number: i64) -> f64 {
+    let bits = mixed(mixed(seed).wrapping_add(number.cast_unsigned()));
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// The bits of a counter, mixed: an output of SplitMix64 (Steele, Lea and Flood 2014).
@@ -200,18 +209,30 @@ impl Sampler {
         self.number < 0 && self.time(self.number) <= now
     }
 
+    /// Reads the elongation `a`, which is that of the time of the next reading. Returns the number
+    /// of the reading and what it is.
+    pub(super) fn sense(&mut self, a: f64) -> (i64, f64) {
+        let number = self.number;
+        self.number += 1;
+        self.next = self.time(self.number);
+        (number, reading(&self.of, number, a))
+    }
+
+    /// The number of the next reading.
+    pub(super) fn number(&self) -> i64 {
+        self.number
+    }
+
     /// Reads the elongation `a`, which is that of the time of the next reading. Returns the signal
     /// that is held from then on.
     pub(super) fn read(&mut self, a: f64) -> f64 {
-        let now = reading(&self.of, self.number, a);
+        let (_, now) = self.sense(a);
         let before = std::mem::replace(&mut self.readings[self.at], now);
         self.at = if self.at + 1 < self.delay {
             self.at + 1
         } else {
             0
         };
-        self.number += 1;
-        self.next = self.time(self.number);
         let difference = now - before;
         if self.signals.is_empty() {
             return difference;

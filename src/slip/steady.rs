@@ -109,8 +109,8 @@ pub(super) fn settled_within(motion: &Motion, abscissa: Option<f64>) -> Option<S
     let feedback = motion.feedback();
     let Channel { memory, .. } = feedback.channel;
     let gains = p.feedback.gains;
-    let gain =
-        gains.alpha_v.abs() * (1.0 + p.dashpots.damping) + gains.alpha_n.abs() * p.law.mu_s();
+    let of_load = motion.load_of_noise().unwrap_or(gains.alpha_n.abs());
+    let gain = gains.alpha_v.abs() * (1.0 + p.dashpots.damping) + of_load * p.law.mu_s();
     let noise = DEVIATIONS * of.noise * (2.0 * of.sample_time * relaxation).sqrt();
     let kept_up = TRANSIENT * gain / (1.0 - memory.abs()) * (noise + of.resolution * relaxation);
     Some(Settled {

@@ -71,7 +71,10 @@ impl<E> From<CaseError> for RunError<E> {
     fn from(error: CaseError) -> Self {
         match error {
             CaseError::Model(error) => Self::Model(error),
-            CaseError::NoCycle(_) => Self::Needs(SpecError::whole(error.to_string())),
+            CaseError::NoCycle(_)
+            | CaseError::BesideReturnMap { .. }
+            | CaseError::SampleTime { .. }
+            | CaseError::NoRecursion(_) => Self::Needs(SpecError::whole(error.to_string())),
         }
     }
 }

@@ -614,3 +614,24 @@ fn noise_is_that_of_all_frequencies() {
         }
     }
 }
+
+/// One root is found of a block without friction, whose own pair lies on the circle.
+#[test]
+fn the_largest_root_of_a_block_without_friction_is_found() {
+    for (a_v, a_n) in [(0.0, -2.4), (-0.3, 0.0), (0.0, -0.1)] {
+        let of = Sampled {
+            groups: Groups::new(0.0, a_v, a_n),
+            h: 0.05,
+            m: 10,
+            memory: 0.0,
+            late: 0,
+        };
+        let expected = of.sizes()[0].ln() / of.h;
+        let found = SampledRoots::new(of.model()).spectrum(0.5, 1);
+        assert!(found.certified, "{a_v} {a_n}: {found:?}");
+        assert!(
+            (found.abscissa - expected).abs() < 1e-9,
+            "{found:?} {expected}"
+        );
+    }
+}

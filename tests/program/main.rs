@@ -22,6 +22,7 @@ mod queue_files;
 
 mod actuators;
 mod cli;
+mod compare;
 mod curves;
 mod damaged;
 mod digital;
@@ -38,6 +39,7 @@ mod progress;
 #[cfg(target_os = "linux")]
 mod queue;
 mod reproduce;
+mod return_map;
 mod rig;
 mod shards;
 mod speeds;

@@ -41,9 +41,11 @@ fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
         ("normal_load", s.load),
     ];
     let mut given: Vec<_> = plain.into_iter().filter(|(_, x)| *x != 1.0).collect();
-    let gains = [("alpha_v", s.alpha_v), ("alpha_n", s.alpha_n)];
-    given.extend(gains.into_iter().filter(|(_, x)| *x != 0.0));
-    given.push(("tau", s.tau));
+    if s.amplitude == 0.0 {
+        let gains = [("alpha_v", s.alpha_v), ("alpha_n", s.alpha_n)];
+        given.extend(gains.into_iter().filter(|(_, x)| *x != 0.0));
+        given.push(("tau", s.tau));
+    }
     let echo = [
         ("memory", s.memory),
         ("latency", s.latency),
@@ -77,7 +79,16 @@ pub(crate) fn law_and_parameters(s: &Setting) -> String {
     if let Some((expression, own)) = formula(&s.friction) {
         text += &format!("mu_k = \"{expression}\"\n{}", lines(&own));
     }
-    text + "[fixed]\n" + &lines(&parameters(s)) + &lines(&[("v0", s.v0)])
+    text += &format!(
+        "[fixed]\n{}{}",
+        lines(&parameters(s)),
+        lines(&[("v0", s.v0)])
+    );
+    if s.amplitude > 0.0 {
+        let amplitude = lines(&[("amplitude", s.amplitude)]);
+        text += &format!("[feedback]\ncontrol = \"return-map\"\n{amplitude}");
+    }
+    text
 }
 
 /// A case file that traces a motion to its horizon.

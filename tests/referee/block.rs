@@ -187,7 +187,7 @@ impl Block {
     }
 
     /// v0 at a time between the last corner and the next one, and its rate.
-    fn unperturbed(&self, t: f64) -> (f64, f64) {
+    pub(super) fn unperturbed(&self, t: f64) -> (f64, f64) {
         let (s, behind) = (&self.setting, self.behind);
         let (since, from) = match behind.checked_sub(1) {
             Some(last) => (s.programme[last].at, s.programme[last].v0),

@@ -23,6 +23,7 @@ fn setting(law: Law, (alpha_v, alpha_n): (f64, f64), tau: f64, v0: f64) -> Setti
         memory: 0.0,
         latency: 0.0,
         sample_time: 0.0,
+        amplitude: 0.0,
         damping: 0.0,
         viscous: 0.0,
         of_v: FREE,

@@ -21,7 +21,9 @@ mod pchip;
 mod ramp;
 mod random;
 mod readings;
+mod return_map;
 mod setting;
+mod shares;
 mod steps;
 mod switch_on;
 mod tables;
@@ -154,6 +156,18 @@ fn motions_held_by_chance() {
     assert!(tally.compared > 5 * tally.asked, "{tally:?}");
 }
 
+/// Control by the return map, here and there with dashpots and programmes of v0.
+#[test]
+fn motions_under_the_return_map() {
+    let total = given("SLIPMAP_CASES").map_or(300, |n| n as usize);
+    let tally = ask("motions under the return map", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x3e74, number);
+        against::motion(&random::steered(&mut chance))
+    });
+    holds(&tally, 0.05, 0.0);
+    assert!(tally.compared > 5 * tally.asked, "{tally:?}");
+}
+
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
@@ -168,6 +182,7 @@ fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64
             memory: 0.0,
             latency: 0.0,
             sample_time: 0.0,
+            amplitude: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,
@@ -302,6 +317,7 @@ fn starts_of_basins() {
             memory: 0.0,
             latency: 0.0,
             sample_time: 0.0,
+            amplitude: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,

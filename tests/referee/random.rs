@@ -2,6 +2,7 @@
 
 use super::law::{Friction, Law, Shape};
 use super::pchip::Curve;
+use super::return_map::damping;
 use super::setting::{Corner, FREE, Setting};
 
 /// Numbers that look random, the same for the same seed.
@@ -153,6 +154,7 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
             memory: 0.0,
             latency: 0.0,
             sample_time: 0.0,
+            amplitude: 0.0,
             damping: 0.0,
             viscous: 0.0,
             of_v: FREE,
@@ -206,6 +208,37 @@ pub(crate) fn held(chance: &mut Chance) -> Start {
     s.sample_time = s.tau / in_delay as f64;
     s.latency = (s.latency / s.sample_time).round().min(60.0) * s.sample_time;
     start
+}
+
+/// A motion under control by the return map, perhaps with dashpots and a programme of v0 between
+/// two values. Readings tell the velocity at both.
+pub(crate) fn steered(chance: &mut Chance) -> Start {
+    loop {
+        let mut start = [start, damped][chance.below(2)](chance);
+        let (horizon, s) = (start.horizon, &mut start.setting);
+        (s.of_v, s.of_load) = (FREE, FREE);
+        (s.memory, s.latency) = (0.0, 0.0);
+        // The signal is the change of the load itself.
+        (s.alpha_v, s.alpha_n) = (0.0, 1.0);
+        s.amplitude = s.load * chance.between(0.03, 0.95);
+        s.switch_on = [0.0, 0.0, chance.between(0.0, 0.3) * horizon][chance.below(3)];
+        if chance.below(4) == 0 {
+            s.programme = vec![Corner {
+                at: s.switch_on + chance.between(0.1, 0.6) * horizon,
+                v0: s.v0 * chance.log(0.5, 2.0),
+                ramp: chance.below(2) == 0,
+            }];
+        }
+        let last = s.programme.first().map_or(s.v0, |corner| corner.v0);
+        let tells = [s.v0, last].map(|v0| 1.0 - 0.25 * damping(s, v0).powi(2));
+        if tells.iter().all(|square| *square > 0.1) {
+            let [slowest, fastest] = [f64::min, f64::max].map(|of| of(tells[0], tells[1]).sqrt());
+            let angle = chance.between(0.06 / slowest, 3.05 / fastest);
+            (s.sample_time, s.tau) = (angle * s.time(), angle * s.time());
+            start.horizon = horizon.max(s.switch_on + 12.0 * s.time());
+            return start;
+        }
+    }
 }
 
 /// Limits of v, these times v0, of the load, or of both.
@@ -296,6 +329,7 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
         memory: 0.0,
         latency: 0.0,
         sample_time: 0.0,
+        amplitude: 0.0,
         damping: 0.0,
         viscous: 0.0,
         of_v: FREE,

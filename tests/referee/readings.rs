@@ -46,6 +46,10 @@ impl Block {
 
     /// Reads the elongation.
     pub(super) fn read(&mut self) {
+        if self.setting.amplitude > 0.0 {
+            self.steer();
+            return;
+        }
         let (s, t) = (&self.setting, self.next_reading());
         if self.signals.is_empty() {
             let in_delay = self.readings_in(s.tau);

@@ -17,6 +17,8 @@ pub(crate) struct Setting {
     pub latency: f64,
     /// h, the time from reading to reading; 0 without a digital loop.
     pub sample_time: f64,
+    /// The largest change of the load under control by the return map; 0 under delayed feedback.
+    pub amplitude: f64,
     /// c, the dashpot beside the spring, and c_g, that to the ground.
     pub damping: f64,
     pub viscous: f64,

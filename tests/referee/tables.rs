@@ -83,6 +83,7 @@ impl Row<'_> {
             memory: 0.0,
             latency: 0.0,
             sample_time: self.or_zero("sample_time"),
+            amplitude: 0.0,
             damping: self.or_zero("damping"),
             viscous: self.or_zero("viscous"),
             of_v: self.limits(["v_min", "v_max"]),

@@ -270,6 +270,8 @@ fn sweep_files(page: &mut String) {
     keys_of(page, &keys::TOLERANCE);
     heading(page, 2, "Keys of a case file");
     keys_of(page, &keys::CASE);
+    heading(page, 2, "`[feedback]`");
+    keys_of(page, &keys::FEEDBACK);
     heading(page, 2, "`[trace]`");
     keys_of(page, &keys::TRACE);
     heading(page, 2, "`[[programme]]`");

@@ -44,6 +44,7 @@ pub use line::{SampledLine, multiple, multiples_within};
 pub use noise::NoiseResponse;
 pub use roots::SampledRoots;
 use step::Step;
+pub(crate) use step::recursion;
 
 /// The most samples in a delay or a latency.
 pub const MOST_SAMPLES: f64 = 1e9;

@@ -22,6 +22,8 @@ use crate::model::elementary::{exp, expm1, norm, sincos};
 /// Zeros smaller than e to this over the number of samples in the delay are not looked for: their
 /// powers vanish.
 const SMALLEST: f64 = -500.0;
+/// The first ln |z| that is tried above 0, over the number of samples.
+const ABOVE: f64 = 0.93;
 /// The largest ln |z| of a zero that is looked for.
 const LARGEST: f64 = 600.0;
 /// Halvings of a range of ln r until it is as narrow as Newton's method needs.
@@ -59,7 +61,8 @@ impl SampledLoop {
         let mut found: Vec<Zero> = Vec::new();
         let samples = (multiple + self.late) as f64;
         let smallest = SMALLEST / samples;
-        let (mut least, mut high) = (-1.0 / samples, 1.0 / samples);
+        // Halving does not meet |z| = 1, on which a block without friction has its own pair.
+        let (mut least, mut high) = (-1.0 / samples, ABOVE / samples);
         let enough = 2 * wanted as u64;
         let mut total = self.outside(least, multiple);
         while total < enough && least > smallest {

@@ -63,6 +63,20 @@ impl Rows {
     }
 }
 
+/// t₁, t₂, g₁ and g₂ of a block of these groups, read once in `sample_time`: about sliding the
+/// reading after the next one is
+///
+/// ```text
+/// a_{k+1} = t₁ a_k + t₂ a_{k−1} + g₁ S_k + g₂ S_{k−1}
+/// ```
+///
+/// for p = z² − t₁ z − t₂ and q = g₁ z + g₂.
+pub(crate) fn recursion(groups: Groups, sample_time: f64) -> [f64; 4] {
+    let Step { open, held } = Step::of(groups, sample_time);
+    let ([p0, p1, _], [q0, q1, _]) = (open, held);
+    [2.0 - p1, p1 - p0 - 1.0, q1, q0 - q1]
+}
+
 /// E = e₀ + e₁ A.
 fn integral(b: f64, h: f64) -> [f64; 2] {
     let mut halvings = 0;
@@ -101,7 +115,7 @@ fn product(b: f64, c: [f64; 2], d: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::elementary::{expm1, sin};
+    use crate::model::elementary::{cos, expm1, sin};
 
     /// Without friction e^(Ah) turns the state by h.
     #[test]
@@ -137,6 +151,19 @@ mod tests {
                 assert!(off.abs() < 1e-8, "{s} {column} {off}");
             }
         }
+    }
+
+    /// Readings of a block that turns freely, with a load that is held, are those of a shifted
+    /// circle: a = cos(t + θ) + g S.
+    #[test]
+    fn the_next_reading_follows_from_two() {
+        let h = 0.9;
+        let [t1, t2, g1, g2] = recursion(Groups::new(0.0, 0.0, 0.4), h);
+        assert!((t1 - 2.0 * cos(h)).abs() < 1e-15 && (t2 + 1.0).abs() < 1e-15);
+        // Under a steady load a rests at μ S.
+        assert!(((g1 + g2) / (1.0 - t1 - t2) - 0.4).abs() < 1e-14);
+        // From rest a reaches μ (1 − cos h).
+        assert!((g1 - 0.4 * (1.0 - cos(h))).abs() < 1e-15);
     }
 
     /// The product of the zeros of p is det Φ = e^(−bh).

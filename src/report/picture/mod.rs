@@ -25,6 +25,7 @@
 //! - `text`, `font`: styles; `letters`: where texts and lines are
 //! - `boundaries`: the boundaries of stability in one plane, with a colour for each value of the
 //!   axis outside it
+//! - `compared`: shares of starts that reach sliding, by two methods of control
 //! - `error`: why a picture could not be drawn
 //! - `heat`: heat maps of a field
 //! - `kinds`: boundaries other than pairs of roots on the axis
@@ -48,6 +49,7 @@ mod chained;
 mod choice;
 mod clip;
 mod close_up;
+mod compared;
 mod curve_labels;
 mod curve_lines;
 mod degrees;
@@ -109,6 +111,7 @@ use crate::report::visible::visible_line;
 use crate::setting::CaseSpec;
 use crate::store::{MapFile, TraceFile};
 use choice::Choice;
+pub use compared::ComparedPicture;
 pub use error::PictureError;
 use file::{Format, Origin};
 pub use file::{Picture, is_name, named_in};
@@ -188,6 +191,21 @@ pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, Pictur
     roots::draw(picture, &mut scene);
     let origin = Origin {
         of: "the characteristic roots of a point".to_owned(),
+        named: "",
+    };
+    Picture::of(&scene, format, path, origin)
+}
+
+/// Draws a comparison of methods of control for the file `path`, as [`draw`] does a map.
+///
+/// # Errors
+/// When the name of the file is not that of a picture.
+pub fn draw_compared(picture: &ComparedPicture, path: &Path) -> Result<Picture, PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    compared::draw(picture, &mut scene);
+    let origin = Origin {
+        of: "a comparison of methods of control".to_owned(),
         named: "",
     };
     Picture::of(&scene, format, path, origin)

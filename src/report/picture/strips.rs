@@ -133,7 +133,7 @@ fn all(spec: &CaseSpec, outcome: Outcome, span: &Span) -> Vec<Strip> {
     let title = with_unit("F", of_force);
     strips.push(strip(Wanted::First, "forces", &title, forces(spec)));
     let control = spec.setting.control();
-    if control.alpha_n != 0.0 {
+    if control.alpha_n != 0.0 || spec.case.feedback.return_map.is_some() {
         let curves = vec![Curve::new(|s| s.n, dark, "")];
         strips.push(strip(always, "load", &with_unit("N", of_force), curves));
     } else if control.alpha_v != 0.0 {

@@ -165,7 +165,7 @@ fn notes(spec: &CaseSpec, trace: &Trace, span: &Span) -> Vec<Rich> {
 /// The time from which the block's velocity stays within 1 % of v0; NaN if it never does.
 fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
     // Without control the time counts from the start.
-    let controlled = spec.setting.control().act();
+    let controlled = spec.case.feedback.acts();
     let switched_on = Some(spec.case.switch_on).filter(|t| controlled && t.is_finite());
     switched_on.unwrap_or(0.0) + trace.summary.settle_time
 }

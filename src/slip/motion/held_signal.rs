@@ -3,6 +3,7 @@
 use super::parameters::Parameters;
 use crate::model::Channel;
 use crate::slip::readings::Sampler;
+use crate::slip::return_map::Controller;
 
 /// The lowest order of a step: near sliding it moves next to nothing from one reading to the next.
 pub(super) const LEAST: usize = 2;
@@ -11,6 +12,8 @@ pub(super) const LEAST: usize = 2;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sampled {
     pub sampler: Sampler,
+    /// Control by the return map, in the place of the signal of delayed feedback.
+    pub controller: Option<Controller>,
     /// S, v and N.
     pub signal: f64,
     pub velocity: f64,
@@ -34,6 +37,7 @@ impl Sampled {
         let (feedback, switch_on) = (&parameters.feedback, parameters.switch_on);
         self.sampler
             .restart(feedback, switch_on, [since, 0.0], known);
+        self.controller = Controller::of(parameters).filter(|_| self.sampler.acts());
         self.order = LEAST;
         (self.signal, self.velocity, self.load) = (0.0, parameters.v0, 1.0);
         (self.slope, self.lasts) = (0.0, f64::INFINITY);
@@ -50,6 +54,7 @@ impl Sampled {
     /// Becomes a copy of `other` in the memory that it has.
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.sampler.copy_from(&other.sampler);
+        self.controller = other.controller;
         (self.signal, self.order) = (other.signal, other.order);
         (self.velocity, self.load) = (other.velocity, other.load);
         (self.slope, self.lasts) = (other.slope, other.lasts);

@@ -25,7 +25,7 @@ impl Motion {
 
     /// v0 in the end.
     #[must_use]
-    pub(in crate::slip) fn last_v0(&self) -> f64 {
+    pub(crate) fn last_v0(&self) -> f64 {
         let last = self.course.as_ref().and_then(|c| c.corners.last());
         last.map_or(self.parameters.v0, |corner| corner.v0)
     }

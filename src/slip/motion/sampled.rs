@@ -108,7 +108,7 @@ impl Motion {
     pub(super) fn advance_sampled(&mut self, horizon: f64) -> Option<Event> {
         let controlled = self.t >= self.parameters.switch_on;
         if controlled && self.t >= self.sampled.sampler.next {
-            self.sampled.signal = self.sampled.sampler.read(self.a);
+            self.sampled.signal = self.read_now();
             self.hold_signal();
         } else if controlled && self.course.is_some() {
             self.hold_signal();
@@ -146,6 +146,42 @@ impl Motion {
         }
         self.kink = if event.is_none() { SMOOTH } else { 2 };
         event.map(|event| self.change_mode(event))
+    }
+
+    /// Reads the elongation of now. Returns the signal that is held from now on: under control by
+    /// the return map the change of the load.
+    fn read_now(&mut self) -> f64 {
+        match &mut self.sampled.controller {
+            Some(controller) => {
+                let (number, y) = self.sampled.sampler.sense(self.a);
+                controller.steer(number, y, &self.parameters)
+            }
+            None => self.sampled.sampler.read(self.a),
+        }
+    }
+
+    /// The number of the next reading.
+    pub(in crate::slip) fn reads(&self) -> i64 {
+        self.sampled.sampler.number()
+    }
+
+    /// The last reading under control by the return map, and the change of the load since then.
+    pub(in crate::slip) fn last_reading(&self) -> Option<[f64; 2]> {
+        let controller = self.sampled.controller?;
+        Some([controller.before?, controller.load])
+    }
+
+    /// By how much noise of a reading changes the load under control by the return map, at most;
+    /// none under delayed feedback.
+    pub(in crate::slip) fn load_of_noise(&self) -> Option<f64> {
+        Some(self.sampled.controller?.of_noise())
+    }
+
+    /// By how much the load of sliding differs from N0 in the end, under control by a return map
+    /// that is wrong about it.
+    pub(super) fn load_in_the_end(&self) -> f64 {
+        let controller = self.sampled.controller;
+        controller.map_or(0.0, |of| of.load_at_rest(&self.parameters, self.last_v0()))
     }
 
     /// Takes the readings before switch-on of the last step, which began at `start`.
@@ -249,10 +285,14 @@ impl Motion {
             if last <= self.tolerance || order >= self.order || last.is_nan() {
                 let spare = before <= SPARE * self.tolerance;
                 self.sampled.order = if spare { order - 1 } else { order };
-                return match last <= self.tolerance {
-                    true => self.resolved_by_friction(limit),
-                    false => self.free_length(),
-                };
+                if last.is_nan() || last > self.tolerance {
+                    return self.free_length();
+                }
+                // Near sliding a low order tells the motion, but does not bound the friction.
+                let holds = self.resolved_by_friction(limit);
+                if holds >= limit || order >= self.order {
+                    return holds;
+                }
             }
             order = (order + MORE).min(self.order);
         }

@@ -1,0 +1,231 @@
+//! The recursion of readings, reconstructed from a record near sliding.
+//!
+//! The block begins in sliding and is disturbed by small known pulses of the load, drawn with the
+//! seed of its readings: without them nothing would tell what a load does. The record ends where
+//! the block first stops. Its readings are fitted by least squares to
+//!
+//! ```text
+//! a_{k+1} = t₁ a_k + t₂ a_{k−1} + g₁ δN_k + g₂ δN_{k−1} + const
+//! ```
+
+use super::motion::{Accuracy, Event, Motion, Parameters};
+use super::return_map::Steering;
+use crate::model::{Record, Recursion};
+
+/// The numbers of the recursion.
+const NUMBERS: usize = 5;
+/// A column is told from those before it where more than this share of it is left.
+const TOLD_APART: f64 = 1e-6;
+/// What is drawn for a record is drawn for no motion.
+const OF_RECORDS: u64 = 0x7265_636f_7264;
+
+/// Why a record tells no recursion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NoRecursion {
+    /// The block stopped, or lifted off, before there were enough readings.
+    #[error(
+        "the block stopped after {0} readings of the record, and the fit needs {least}: a smaller \
+         pulse or a shorter sample_time keeps it sliding for longer",
+        least = Record::LEAST
+    )]
+    Stopped(usize),
+    /// The fit is singular.
+    #[error(
+        "the readings of the record do not tell the five numbers of the return map: a larger \
+         pulse, a longer record or a finer resolution does"
+    )]
+    Singular,
+}
+
+/// A reading with the change of the load that was set at it.
+type Read = [f64; 2];
+
+/// The recursion that a record of a block with these parameters tells.
+pub(super) fn reconstructed(
+    p: &Parameters,
+    accuracy: Accuracy,
+    record: Record,
+) -> Result<Recursion, NoRecursion> {
+    let read = read(p, accuracy, record);
+    if read.len() < Record::LEAST as usize {
+        return Err(NoRecursion::Stopped(read.len()));
+    }
+    let recursion = fitted(&read).ok_or(NoRecursion::Singular)?;
+    Steering::of(recursion)
+        .map(|steering| steering.of)
+        .ok_or(NoRecursion::Singular)
+}
+
+/// The readings of a record, to the first stop.
+fn read(p: &Parameters, accuracy: Accuracy, record: Record) -> Vec<Read> {
+    let mut p = p.clone();
+    p.switch_on = 0.0;
+    p.feedback.readings.seed ^= OF_RECORDS;
+    let horizon = f64::from(record.readings) * p.feedback.readings.sample_time;
+    let (v0, rest) = (p.v0, super::return_map::of_law(&p, p.v0, 1.0).rest);
+    let mut motion = Motion::new(p, accuracy, v0, rest);
+    let mut read = Vec::new();
+    while read.len() < record.readings as usize && !motion.is_lost() {
+        let last = motion.reads();
+        let event = motion.advance(2.0 * horizon);
+        if motion.reads() != last {
+            read.extend(motion.last_reading());
+        }
+        let ends = [Event::Stick, Event::Reversal, Event::LiftOff];
+        if event.is_some_and(|event| ends.contains(&event)) {
+            break;
+        }
+    }
+    read
+}
+
+/// The recursion of least squares; none where a column of it follows from others.
+fn fitted(read: &[Read]) -> Option<Recursion> {
+    let n = read.len() as f64;
+    let mean = read.iter().map(|[y, _]| y).sum::<f64>() / n;
+    let rows: Vec<[f64; NUMBERS + 1]> = read
+        .windows(3)
+        .map(|of| {
+            let [y0, y1, y2] = [0, 1, 2].map(|i: usize| of[i][0] - mean);
+            [1.0, y1, y0, of[1][1], of[0][1], y2]
+        })
+        .collect();
+    let [constant, t1, t2, g1, g2] = least_squares(rows)?;
+    let fall = 1.0 - t1 - t2;
+    let found = Recursion {
+        readings: [t1, t2],
+        loads: [g1, g2],
+        rest: mean + constant / fall,
+    };
+    (fall.abs() > TOLD_APART && found.rest.is_finite()).then_some(found)
+}
+
+/// The length of a column.
+fn norm(rows: &[[f64; NUMBERS + 1]], column: usize) -> f64 {
+    let squares = rows.iter().map(|row| row[column] * row[column]);
+    squares.sum::<f64>().sqrt()
+}
+
+/// The numbers that times the first columns come closest to the last one, by reflections of
+/// Householder.
+fn least_squares(mut rows: Vec<[f64; NUMBERS + 1]>) -> Option<[f64; NUMBERS]> {
+    let mut diagonal = [0.0; NUMBERS];
+    for i in 0..NUMBERS {
+        let (whole, left) = (norm(&rows, i), norm(&rows[i..], i));
+        if left.is_nan() || left <= TOLD_APART * whole {
+            return None;
+        }
+        diagonal[i] = if rows[i][i] > 0.0 { -left } else { left };
+        rows[i][i] -= diagonal[i];
+        let length = norm(&rows[i..], i);
+        let reflected: Vec<f64> = rows[i..].iter().map(|row| row[i]).collect();
+        for j in i + 1..=NUMBERS {
+            let along = reflected.iter().zip(&rows[i..]);
+            let along = along.map(|(v, row)| v * row[j]).sum::<f64>();
+            for (v, row) in reflected.iter().zip(&mut rows[i..]) {
+                row[j] -= 2.0 * along / (length * length) * v;
+            }
+        }
+    }
+    let mut found = [0.0; NUMBERS];
+    for i in (0..NUMBERS).rev() {
+        let known = (i + 1..NUMBERS).map(|j| rows[i][j] * found[j]).sum::<f64>();
+        found[i] = (rows[i][NUMBERS] - known) / diagonal[i];
+    }
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::return_map::of_law;
+    use super::*;
+    use crate::model::{Dashpots, Feedback, FrictionLaw, MapModel, Readings, ReturnMap};
+
+    fn parameters(law: FrictionLaw, record: Record, noise: f64) -> Parameters {
+        let mut feedback = Feedback::new(0.0, 1.0, 1.8);
+        feedback.readings = Readings {
+            sample_time: 0.9,
+            noise,
+            seed: 3,
+            ..Readings::default()
+        };
+        feedback.return_map = Some(ReturnMap {
+            amplitude: 0.5,
+            model: MapModel::Reconstructed(record),
+        });
+        Parameters {
+            law,
+            velocity_unit: 1.0,
+            dashpots: Dashpots {
+                damping: 0.05,
+                viscous: 0.1,
+            },
+            feedback,
+            v0: 0.3,
+            switch_on: 0.0,
+        }
+    }
+
+    fn off(one: &Recursion, other: &Recursion) -> f64 {
+        let numbers = |of: &Recursion| {
+            let ([t1, t2], [g1, g2]) = (of.readings, of.loads);
+            [t1, t2, g1, g2, of.rest]
+        };
+        let pairs = numbers(one).into_iter().zip(numbers(other));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// A block in slip under Coulomb friction is linear: a record of any length, from the shortest
+    /// on, tells the numbers of the law.
+    #[test]
+    fn a_linear_record_tells_the_numbers_of_the_law() {
+        for readings in [Record::LEAST, 12, 60] {
+            let record = Record {
+                readings,
+                pulse: 0.01,
+            };
+            let p = parameters(FrictionLaw::coulomb(0.4, 1.0).unwrap(), record, 0.0);
+            let found = reconstructed(&p, Accuracy::default(), record).unwrap();
+            let expected = of_law(&p, p.v0, 1.0);
+            assert!(
+                off(&found, &expected) < 1e-7,
+                "{readings}: {found:?} {expected:?}"
+            );
+        }
+    }
+
+    /// Of friction that weakens smaller pulses tell more, and noise tells less.
+    #[test]
+    fn pulses_and_noise_limit_what_a_record_tells() {
+        let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        let error = |pulse: f64, noise: f64| {
+            let record = Record {
+                readings: 12,
+                pulse,
+            };
+            let p = parameters(law.clone(), record, noise);
+            let found = reconstructed(&p, Accuracy::default(), record).unwrap();
+            off(&found, &of_law(&p, p.v0, 1.0))
+        };
+        let [large, small] = [error(0.02, 0.0), error(0.002, 0.0)];
+        assert!(small < 0.2 * large && small > 1e-6, "{large} {small}");
+        assert!(error(0.002, 1e-4) > 10.0 * small);
+    }
+
+    #[test]
+    fn what_tells_too_little_is_refused() {
+        let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        let record = Record {
+            readings: 20,
+            pulse: 0.3,
+        };
+        let mut p = parameters(law, record, 0.0);
+        p.v0 = 0.02;
+        let refused = reconstructed(&p, Accuracy::default(), record).unwrap_err();
+        assert!(matches!(refused, NoRecursion::Stopped(1..7)), "{refused:?}");
+        let mut p = parameters(FrictionLaw::coulomb(0.4, 1.0).unwrap(), record, 0.0);
+        p.feedback.readings.resolution = 10.0;
+        let refused = reconstructed(&p, Accuracy::default(), record);
+        assert_eq!(refused.unwrap_err(), NoRecursion::Singular);
+    }
+}
