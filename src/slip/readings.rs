@@ -63,8 +63,8 @@ pub(crate) fn check(feedback: &Feedback) -> Result<(), ModelError> {
         sample_time has fewer)";
     ModelError::check("tau", tau, allowed, whole)?;
     let whole = latency == 0.0 || times(latency).is_some_and(|times| times <= MOST_READINGS);
-    let allowed = "0 or a whole multiple of sample_time, at most a million (a longer sample_time has \
-        fewer)";
+    let allowed = "0 or a whole multiple of sample_time, at most a million (a longer \
+        sample_time has fewer)";
     ModelError::check("latency", latency, allowed, whole)?;
     Ok(())
 }

@@ -170,6 +170,11 @@ pub(super) fn value([c0, c1, c2]: Quadratic, zeta: Complex64) -> Complex64 {
     (zeta * c2 + c1) * zeta + c0
 }
 
+/// c′(ζ).
+pub(super) fn slope([_, c1, c2]: Quadratic, zeta: Complex64) -> Complex64 {
+    zeta * (2.0 * c2) + c1
+}
+
 /// The zeros of a quadratic, the constant first, by falling size, with the sign of its slope there.
 fn zeros([c0, c1, c2]: [f64; 3]) -> [Option<(f64, i8)>; 2] {
     let sign = |slope: f64| if slope > 0.0 { 1 } else { -1 };

@@ -9,9 +9,8 @@ use std::f64::consts::{PI, TAU};
 use num_complex::Complex64;
 
 use super::SampledLoop;
-use super::circle::{Circle, Junction, value};
+use super::circle::{Circle, Junction, slope, value};
 use super::outside::Weights;
-use super::step::Quadratic;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::{Crossing, Direction};
 use crate::linear::general::DelayLine;
@@ -147,11 +146,6 @@ impl SampledLoop {
         let motion = -Complex64::i() * junction.angle * size / slope;
         (motion * z.conj()).re > 0.0
     }
-}
-
-/// c′(ζ).
-pub(super) fn slope([_, c1, c2]: Quadratic, zeta: Complex64) -> Complex64 {
-    zeta * (2.0 * c2) + c1
 }
 
 impl SampledLine {

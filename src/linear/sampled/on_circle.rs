@@ -11,8 +11,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::SampledLoop;
-use super::circle::{Circle, value};
-use super::line::slope;
+use super::circle::{Circle, slope, value};
 use super::step::Quadratic;
 use crate::model::elementary::sincos;
 

@@ -9,8 +9,8 @@ use std::f64::consts::{PI, TAU};
 use num_complex::Complex64;
 
 use super::SampledLoop;
-use super::circle::{Circle, value};
-use super::line::{SampledLine, multiple, slope};
+use super::circle::{Circle, slope, value};
+use super::line::{SampledLine, multiple};
 use super::outside::Weights;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::general::{RightOf, Spectrum};
