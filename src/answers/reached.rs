@@ -48,16 +48,29 @@ pub fn reached(motion: &mut Motion, asked: Asked) -> Outcome {
     Outcome::Undecided
 }
 
-/// The v0 at which a motion that begins in sliding first stops, in the unit of the motion; none
-/// where it does not by the time `until`.
-pub fn lost_at(motion: &mut Motion, until: f64) -> Option<f64> {
+/// What becomes of sliding while v0 changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// It lasts to the end.
+    Held,
+    /// The block first stops, or lifts off, at this v0, in the unit of the motion.
+    Lost(f64),
+    /// The steps ran out before the end, or the motion was lost.
+    Unknown,
+}
+
+/// What becomes of a motion that begins in sliding by the time `until`.
+pub fn fate(motion: &mut Motion, until: f64) -> Fate {
     for _ in 0..MOST_STEPS {
-        if motion.t >= until || motion.is_lost() {
-            break;
+        if motion.t >= until {
+            return Fate::Held;
+        }
+        if motion.is_lost() {
+            return Fate::Unknown;
         }
         if let Some(Event::Stick | Event::Reversal | Event::LiftOff) = motion.advance(until) {
-            return Some(motion.parameters().v0);
+            return Fate::Lost(motion.parameters().v0);
         }
     }
-    None
+    Fate::Unknown
 }

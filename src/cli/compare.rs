@@ -1,4 +1,6 @@
 //! `slipmap compare`: control by the return map beside the delayed feedback of a case.
+//!
+//! Longer than most files: its flags, what they may be, and the question that they make.
 
 use std::path::PathBuf;
 
@@ -259,6 +261,39 @@ impl Args {
         Ok(())
     }
 
+    /// Checks that no flag is given that has no effect.
+    fn check_flags(&self) -> Result<(), Failure> {
+        let exact = self.model == MODELS[0];
+        let wrong = self.over == OverName::Slope || !self.slope.is_empty();
+        let route = self.over == OverName::Route;
+        let found = [
+            (
+                wrong && !exact,
+                "--slope is of an exact model",
+                "leave out --model",
+            ),
+            (
+                self.record.is_some() && exact,
+                "--record is of a model that is reconstructed",
+                "give --model reconstructed as well",
+            ),
+            (
+                route && self.horizon.is_some(),
+                "--horizon is not of a route",
+                "a route ends with its programme: leave it out",
+            ),
+            (
+                route && self.starts != STARTS,
+                "--starts is not of a route",
+                "a route begins in sliding: leave it out",
+            ),
+        ];
+        match found.into_iter().find(|(given, ..)| *given) {
+            Some((_, message, help)) => Err(Failure::bad_input_with_help(message, help)),
+            None => Ok(()),
+        }
+    }
+
     /// By which shares the slope of the model is wrong.
     fn slopes(&self) -> Result<Vec<f64>, Failure> {
         let wrong = |slope: &&f64| slope.is_nan() || slope.abs() > MOST_WRONG;
@@ -278,6 +313,7 @@ impl Args {
 
     /// What is asked about a case.
     fn question(&self, spec: &CaseSpec) -> Result<Question, Failure> {
+        self.check_flags()?;
         self.check(spec)?;
         let mut case = spec.case.clone();
         let units = case.units();

@@ -151,6 +151,7 @@ pub(super) fn of_route(found: &Route, spec: &CaseSpec) -> Told {
                 .map_or("-".to_owned(), |x| format!("{}{of_load}", Shown(x))),
             match held.lost_at {
                 Some(v0) => format!("lost at {v0:.6}{of_v0}"),
+                None if held.held.is_none() => "not known: too many steps".to_owned(),
                 None => "to the end".to_owned(),
             },
         ]

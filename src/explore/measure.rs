@@ -118,7 +118,8 @@ pub struct Measurement {
 pub struct MeasuredV0 {
     /// The pulling velocity.
     pub v0: f64,
-    /// What was averaged, as mu_k; null where nothing was: there is no setting, or N reached 0.
+    /// What was averaged, as mu_k; null where nothing was: there is no setting, or the mean was cut
+    /// short, as where N reached 0.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub mu_k: f64,
     /// The standard error that is predicted of it, from noise and resolution of the readings; 0

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::comparison::{At, Method, Question};
-use crate::answers::reached::lost_at;
+use crate::answers::reached::{Fate, fate};
 use crate::model::stop::Stop;
 use crate::slip::case::{Case, CaseError};
 
@@ -20,9 +20,13 @@ pub struct Held {
     /// The largest change of the load; null without control.
     #[cfg_attr(feature = "serve", schema(required))]
     pub amplitude: Option<f64>,
-    /// The v0 at which the block first stops; null where it slides to the end.
+    /// The v0 at which the block first stops; null where it slides to the end, or that is not
+    /// known.
     #[cfg_attr(feature = "serve", schema(required))]
     pub lost_at: Option<f64>,
+    /// Whether it slides to the end; null where the steps ran out before.
+    #[cfg_attr(feature = "serve", schema(required))]
+    pub held: Option<bool>,
 }
 
 /// How low v0 may become under each method.
@@ -47,7 +51,14 @@ impl Question {
     /// When a value is out of range.
     pub fn route(&self, stop: &Stop) -> Result<Option<Route>, CaseError> {
         let last = self.case.programme.last();
-        let (until, end) = last.map_or((0.0, self.case.v0), |corner| (corner.at, corner.v0));
+        let (until, end) = last.map_or((0.0, self.case.v0), |corner| {
+            // After a jump the last v0 has to last.
+            let until = match corner.ramp {
+                true => corner.at,
+                false => corner.at.max(self.case.horizon),
+            };
+            (until, corner.v0)
+        });
         let mut methods = Vec::new();
         for method in std::iter::once(None).chain(self.methods().map(Some)) {
             let places = match method {
@@ -89,13 +100,19 @@ impl Question {
         };
         let units = case.units();
         let mut motion = case.motion()?.heeding(stop.clone());
-        let lost = lost_at(&mut motion, until / units.time);
+        let found = fate(&mut motion, until / units.time);
+        let (lost, held) = match found {
+            Fate::Held => (None, Some(true)),
+            Fate::Lost(v0) => (Some(v0), Some(false)),
+            Fate::Unknown => (None, None),
+        };
         let (name, sample_time) = method.map_or(("none", None), |of| self.named(of));
         Ok(Held {
             method: name,
             sample_time,
             amplitude: method.map(|_| at.amplitude),
             lost_at: lost.map(|v0| v0 * units.velocity),
+            held,
         })
     }
 }

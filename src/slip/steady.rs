@@ -18,9 +18,9 @@ use super::motion::Motion;
 use crate::model::Channel;
 
 /// Cycles, or windows, that have to go on without a trend; an even number.
-pub(super) const LASTING: usize = 24;
+const LASTING: usize = 24;
 /// For how many times as long as the feedback remembers they have to go on.
-pub(super) const DELAYS: f64 = 4.0;
+const DELAYS: f64 = 4.0;
 /// How many more pairs of values may rise than fall, in standard deviations of that number.
 const ERRORS: f64 = 3.0;
 /// Differences below this, relative, are rounding.
@@ -31,6 +31,10 @@ const DEVIATIONS: f64 = 6.0;
 const TRANSIENT: f64 = 2.0;
 /// A larger part of v0 is no small deviation.
 const LARGEST_PART: f64 = 0.5;
+
+/// How many cycles stick-slip under control by the return map has to go on: by chance a reading
+/// falls where the load steers.
+const STEERED: usize = 240;
 
 /// The last values of `W` numbers of each cycle.
 #[derive(Debug, Clone)]
@@ -91,6 +95,48 @@ impl<const W: usize> Lasting<W> {
     /// The `i`-th number of a cycle, the oldest first.
     fn at(&self, i: usize, cycle: usize) -> f64 {
         self.values[(self.count + cycle) % LASTING][i]
+    }
+}
+
+/// What lasts of a motion whose readings are held.
+pub(super) struct Held {
+    /// Period, slip and elongation at release of each cycle, when the first one began, and how many
+    /// have to go on.
+    pub(super) cycles: Lasting<3>,
+    since: f64,
+    least: usize,
+    /// Amplitudes in windows without a stop.
+    pub(super) amplitudes: Lasting<1>,
+    pub(super) settled: Option<Settled>,
+}
+
+impl Held {
+    /// At the beginning of a motion, of which linear theory tells this `abscissa`; none where
+    /// nothing is held.
+    pub(super) fn of(motion: &Motion, abscissa: Option<f64>) -> Option<Self> {
+        let steered = motion.parameters().feedback.return_map.is_some();
+        motion.is_sampled().then(|| Self {
+            cycles: Lasting::new(),
+            since: f64::INFINITY,
+            least: if steered { STEERED } else { 0 },
+            amplitudes: Lasting::new(),
+            settled: settled_within(motion, abscissa),
+        })
+    }
+
+    /// Whether the return map steers the load: while it does not, cycles are equal, and readings
+    /// drift towards one at which it does.
+    pub(super) fn is_steered(&self) -> bool {
+        self.least > 0
+    }
+
+    /// Adds a cycle that `began` and ends now. Whether stick-slip has gone on for long, where the
+    /// feedback remembers for `tau`.
+    pub(super) fn goes_on(&mut self, cycle: [f64; 3], [began, now]: [f64; 2], tau: f64) -> bool {
+        self.since = self.since.min(began);
+        self.cycles.add(cycle);
+        let for_long = now - self.since >= DELAYS * tau && self.cycles.count >= self.least;
+        for_long && self.cycles.has_no_trend()
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::motion::{Event, Mode, Motion};
 use super::outcome::{Limits, Observer, Outcome, Summary};
-use super::steady::{DELAYS, Lasting, Settled, settled_within};
+use super::steady::{Held, Settled};
 use super::step::Step;
 
 /// Follows `motion` until its outcome is known.
@@ -86,16 +86,6 @@ struct Watch {
     held: Option<Held>,
 }
 
-/// What lasts of a motion whose readings are held.
-struct Held {
-    /// Period, slip and elongation at release of each cycle, and when the first one began.
-    cycles: Lasting<3>,
-    since: f64,
-    /// Amplitudes in windows without a stop.
-    amplitudes: Lasting<1>,
-    settled: Option<Settled>,
-}
-
 /// The decay of small deviations.
 #[derive(Debug, Clone, Copy)]
 struct Decay {
@@ -166,12 +156,7 @@ impl Watch {
                 before: f64::NAN,
                 equal: 0,
             },
-            held: motion.is_sampled().then(|| Held {
-                cycles: Lasting::new(),
-                since: f64::INFINITY,
-                amplitudes: Lasting::new(),
-                settled: settled_within(motion, limits.stable_abscissa),
-            }),
+            held: Held::of(motion, limits.stable_abscissa),
         }
     }
 
@@ -235,17 +220,18 @@ impl Watch {
             elongation: motion.a,
         };
         self.count += 1;
-        let repeating = (1..=MOST_FOLD).find(|&fold| self.repeats(motion.t, fold));
+        let steered = self.held.as_ref().is_some_and(Held::is_steered);
+        let repeating = (1..=MOST_FOLD)
+            .filter(|_| !steered)
+            .find(|&fold| self.repeats(motion.t, fold));
         if let Some(fold) = repeating {
             self.fold = fold;
             self.outcome = Some(Outcome::StickSlip);
         }
         let last = self.cycle(0);
         if let (Some(held), None) = (&mut self.held, self.outcome) {
-            held.since = held.since.min(began);
-            held.cycles.add([last.period, last.slip, last.elongation]);
-            let for_long = motion.t - held.since >= DELAYS * self.tau;
-            if for_long && held.cycles.has_no_trend() {
+            let cycle = [last.period, last.slip, last.elongation];
+            if held.goes_on(cycle, [began, motion.t], self.tau) {
                 self.outcome = Some(Outcome::StickSlip);
             }
         }

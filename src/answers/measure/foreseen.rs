@@ -4,28 +4,15 @@
 use std::sync::OnceLock;
 
 use super::predicted::Predicted;
-use crate::answers::best::{Ranges, default_ranges, robust_setting};
-use crate::answers::vc::VcProblem;
 use crate::critical::CriticalWindows;
-use crate::linear::MarginalTolerance;
-use crate::linear::best::SearchedGain;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::setting::best_plane::parameter_of;
 use crate::setting::experiment::{Chosen, ExperimentSpec};
 use crate::setting::no_answer::NoAnswer;
-use crate::setting::quantity::Quantity;
-use crate::setting::regime_at_v0::RegimeAtV0;
-use crate::setting::search::Protocol;
 use crate::setting::{Parameter, Setting};
 use crate::slip::averaging::Window;
 use crate::slip::case::Case;
 
-/// The part of them by which gain, delay and μ′ may be off at a robust setting, the first one
-/// first. The more a setting stands, the lower its v_c.
-const SPREADS: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
-/// Smaller parts, where no setting stands the first one.
-const SMALLER: [f64; 2] = [0.01, 0.002];
 /// How long is waited, in relaxation times: e⁻²⁵ = 1.4e-11, with room for double and triple roots.
 const WAIT: f64 = 25.0;
 /// And in delays.
@@ -113,16 +100,7 @@ pub struct Experiment {
     /// What is asked.
     pub spec: ExperimentSpec,
     /// v_c of a given setting, which is that of every v0.
-    critical: OnceLock<Option<CriticalWindows>>,
-}
-
-/// A setting that may be taken, with what speaks for it.
-struct Candidate {
-    setting: Setting,
-    spread: Option<f64>,
-    abscissa: Option<f64>,
-    prospect: Prospect,
-    vc: f64,
+    pub(super) critical: OnceLock<Option<CriticalWindows>>,
 }
 
 impl Experiment {
@@ -195,130 +173,6 @@ impl Experiment {
             case
         }))
     }
-
-    /// The setting of the file.
-    fn given(&self, setting: Setting, v0: f64, stop: &Stop) -> Result<Candidate, NoAnswer> {
-        let abscissa = self.abscissa(&setting)?;
-        let mut prospect = Prospect::Unstable;
-        let problem = problem(&setting, stop);
-        let critical = self.critical.get_or_init(|| {
-            let problem = problem.as_ref();
-            problem.map(|problem| problem.find(Protocol::Follow))
-        });
-        if abscissa.is_some() {
-            prospect = prospect_of(v0, problem.as_ref(), critical.as_ref());
-        }
-        Ok(Candidate {
-            setting,
-            spread: None,
-            abscissa,
-            prospect,
-            vc: vc_of(critical.as_ref()),
-        })
-    }
-
-    /// The best robust setting at v0 that has no stick-slip beside it; else the first robust one,
-    /// or the one of fastest decay; none where no setting makes sliding stable.
-    fn best(
-        &self,
-        setting: &Setting,
-        gain: SearchedGain,
-        v0: f64,
-        stop: &Stop,
-    ) -> Result<Option<Candidate>, NoAnswer> {
-        let searched = continuous(setting);
-        let quantity = Quantity::Known(parameter_of(gain));
-        let ranges = default_ranges(&searched, &quantity)?;
-        let robust = |spread: f64| robust_setting(&searched, gain, &ranges, [spread; 3], stop);
-        let mut first = None;
-        for spread in SPREADS {
-            let (_, Some(found)) = robust(spread)? else {
-                break;
-            };
-            let place = (found.robust.gain, found.robust.tau);
-            let candidate = self.candidate(setting, gain, place, v0, stop)?;
-            let candidate = candidate.map(|of| Candidate {
-                spread: Some(spread),
-                ..of
-            });
-            match candidate {
-                Some(found) if found.prospect == Prospect::Safe => return Ok(Some(found)),
-                found => first = first.or(found),
-            }
-        }
-        if first.is_some() || stop.is_set() {
-            return Ok(first);
-        }
-        self.less_robust(setting, gain, (&searched, &ranges), v0, stop)
-    }
-
-    /// The setting that stands a smaller part, or else the one of fastest decay.
-    fn less_robust(
-        &self,
-        setting: &Setting,
-        gain: SearchedGain,
-        (searched, ranges): (&Setting, &Ranges),
-        v0: f64,
-        stop: &Stop,
-    ) -> Result<Option<Candidate>, NoAnswer> {
-        let mut fastest = None;
-        for spread in SMALLER {
-            let (best, robust) = robust_setting(searched, gain, ranges, [spread; 3], stop)?;
-            fastest = Some((best.overall.gain, best.overall.tau));
-            if best.overall.relaxation_time().is_none() {
-                return Ok(None);
-            }
-            let Some(found) = robust else { continue };
-            let place = (found.robust.gain, found.robust.tau);
-            if let Some(found) = self.candidate(setting, gain, place, v0, stop)? {
-                return Ok(Some(Candidate {
-                    spread: Some(spread),
-                    ..found
-                }));
-            }
-        }
-        match fastest {
-            Some(place) => self.candidate(setting, gain, place, v0, stop),
-            None => Ok(None),
-        }
-    }
-
-    /// A gain and a delay at v0, the delay rounded to readings; none where sliding is not stable
-    /// then.
-    fn candidate(
-        &self,
-        setting: &Setting,
-        gain: SearchedGain,
-        (alpha, tau): (f64, f64),
-        v0: f64,
-        stop: &Stop,
-    ) -> Result<Option<Candidate>, NoAnswer> {
-        let mut setting = setting.clone();
-        setting.set(parameter_of(gain), alpha);
-        setting.set(Parameter::Tau, tau.max(setting.get(Parameter::SampleTime)));
-        setting.round_to_samples();
-        let Some(abscissa) = self.abscissa(&setting)? else {
-            return Ok(None);
-        };
-        let problem = problem(&setting, stop);
-        let critical = problem.as_ref().map(|of| of.find(Protocol::Follow));
-        Ok(Some(Candidate {
-            prospect: prospect_of(v0, problem.as_ref(), critical.as_ref()),
-            vc: vc_of(critical.as_ref()),
-            setting,
-            spread: None,
-            abscissa: Some(abscissa),
-        }))
-    }
-
-    /// The abscissa of sliding, where it is stable.
-    fn abscissa(&self, setting: &Setting) -> Result<Option<f64>, ModelError> {
-        let Some(case) = self.spec.simulation.case(setting, 0.0)? else {
-            return Ok(None);
-        };
-        let slowest = case.sliding()?.slowest();
-        Ok(slowest.map(|abscissa| abscissa / case.units().time))
-    }
 }
 
 /// Nothing is predicted.
@@ -328,44 +182,3 @@ const UNKNOWN: Predicted = Predicted {
     bias_of_noise: f64::NAN,
     bias_of_drift: f64::NAN,
 };
-
-/// A setting without readings: to the first order in it a sample time is a latency of its half.
-fn continuous(setting: &Setting) -> Setting {
-    let mut continuous = setting.clone();
-    let half = 0.5 * setting.get(Parameter::SampleTime);
-    continuous.set(Parameter::Latency, setting.get(Parameter::Latency) + half);
-    for exact in [
-        Parameter::SampleTime,
-        Parameter::Noise,
-        Parameter::Resolution,
-    ] {
-        continuous.set(exact, 0.0);
-    }
-    continuous
-}
-
-/// The search for v_c of a setting; none where there is no such search.
-fn problem(setting: &Setting, stop: &Stop) -> Option<VcProblem> {
-    let problem = VcProblem::of(&continuous(setting)).ok()?;
-    Some(problem.until(stop.clone()))
-}
-
-fn prospect_of(
-    v0: f64,
-    problem: Option<&VcProblem>,
-    critical: Option<&CriticalWindows>,
-) -> Prospect {
-    let (Some(problem), Some(critical)) = (problem, critical) else {
-        return Prospect::Unknown;
-    };
-    match problem.regime_at(v0, Protocol::Follow, critical, MarginalTolerance::default()) {
-        RegimeAtV0::Stable => Prospect::Safe,
-        RegimeAtV0::Bistable => Prospect::BelowVc,
-        RegimeAtV0::LiftOff => Prospect::LiftOff,
-        RegimeAtV0::Unstable | RegimeAtV0::Undecided => Prospect::Unknown,
-    }
-}
-
-fn vc_of(critical: Option<&CriticalWindows>) -> f64 {
-    critical.map_or(f64::NAN, |found| found.critical.vc)
-}

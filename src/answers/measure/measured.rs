@@ -202,7 +202,10 @@ impl Experiment {
         let averaged = average(&mut motion, &window, abscissa, case.steps);
         let viscous = case.oscillator.dashpot_ratios().viscous;
         Mean {
-            mu_k: averaged.mean - viscous * v0,
+            mu_k: match averaged.cut {
+                Some(_) => f64::NAN,
+                None => averaged.mean - viscous * v0,
+            },
             unsettled: unsettled(&averaged, v0),
         }
     }

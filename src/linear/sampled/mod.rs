@@ -91,6 +91,21 @@ impl SampledLoop {
         })
     }
 
+    /// The loop with b larger by `slope`, and both gains `factor` times as large.
+    #[must_use]
+    pub fn changed(&self, slope: f64, factor: f64) -> Self {
+        let groups = Groups {
+            b: self.groups.b + slope,
+            a_v: factor * self.groups.a_v,
+            a_n: factor * self.groups.a_n,
+        };
+        Self {
+            groups,
+            step: Step::of(groups, self.sample_time),
+            ..*self
+        }
+    }
+
     /// The number of zeros with |z| > 1 at the delay of `multiple` ≥ 1 sample times.
     #[must_use]
     pub fn n_unstable(&self, multiple: u64) -> u64 {
