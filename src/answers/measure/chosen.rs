@@ -26,21 +26,19 @@ const SMALLER: [f64; 2] = [0.01, 0.002];
 pub(super) struct Candidate {
     pub setting: Setting,
     pub spread: Option<f64>,
-    /// Both dashpots, over √(κM).
-    dashpots: f64,
     pub abscissa: Option<f64>,
     pub prospect: Prospect,
     pub vc: f64,
 }
 
 impl Candidate {
-    /// The same setting, which stands a spread: of a digital loop only where that is so with gain
-    /// and slope changed by it.
+    /// The candidate with the spread that it stands: of a digital loop only where sliding stays
+    /// stable with gain and slope changed by it.
     fn standing(self, spread: f64) -> Self {
-        let stands = match self.setting.linear() {
-            Ok((Linear::Sampled(of), unit)) => {
+        let stands = match (self.setting.linear(), self.setting.oscillator()) {
+            (Ok((Linear::Sampled(of), unit)), Ok(oscillator)) => {
                 let multiple = multiple(self.setting.get(Parameter::Tau), of.sample_time * unit);
-                let slope = of.groups.b - self.dashpots;
+                let slope = of.groups.b - oscillator.dashpot_ratios().sum();
                 let changes = [-spread, spread].into_iter();
                 let mut corners = changes.flat_map(|by| [[by, spread], [by, -spread]]);
                 multiple.is_some_and(|multiple| {
@@ -78,7 +76,6 @@ impl Experiment {
             prospect = prospect_of(v0, problem.as_ref(), critical.as_ref());
         }
         Ok(Candidate {
-            dashpots: setting.oscillator()?.dashpot_ratios().sum(),
             setting,
             spread: None,
             abscissa,
@@ -193,7 +190,6 @@ impl Experiment {
         Ok(Some(Candidate {
             prospect: prospect_of(v0, problem.as_ref(), critical.as_ref()),
             vc: vc_of(critical.as_ref()),
-            dashpots: setting.oscillator()?.dashpot_ratios().sum(),
             setting,
             spread: None,
             abscissa: Some(abscissa),

@@ -15,7 +15,7 @@ use crate::slip::case::Case;
 
 /// How long is waited, in relaxation times: e⁻²⁵ = 1.4e-11, with room for double and triple roots.
 const WAIT: f64 = 25.0;
-/// And in delays.
+/// How long is waited beside that, in delays.
 const DELAYS: f64 = 2.0;
 /// How long is averaged, in relaxation times.
 const AVERAGE: f64 = 100.0;

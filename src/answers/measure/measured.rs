@@ -82,7 +82,7 @@ pub struct MeasuredPoint {
     pub scatter: f64,
     /// How many repeats settled.
     pub settled: u32,
-    /// The same without control, once.
+    /// The mean without control, once.
     pub uncontrolled: Mean,
     /// μ_K of the law that was put in.
     pub law: f64,

@@ -60,23 +60,22 @@ impl GainLine {
     /// # Errors
     /// When they are too many.
     fn boundaries(&self, multiple: u64) -> Result<Vec<f64>, TooMany> {
-        let on_circle = OnCircle::new(&self.fixed, multiple);
+        let real = RealGain {
+            on_circle: OnCircle::new(&self.fixed, multiple),
+            fixed: self.fixed.step.held,
+            held: self.held,
+        };
         let mut found = Vec::new();
         let mut take = |angle: f64| {
-            let parts = on_circle.parts(angle);
+            let parts = real.on_circle.parts(angle);
             let [[fixed, _], [held, _]] =
-                [self.fixed.step.held, self.held].map(|c| on_circle.value(c, angle));
+                [real.fixed, real.held].map(|c| real.on_circle.value(c, angle));
             let sine = parts.twice_sine[0];
             let along = (parts.open[0] * parts.turn[0] - fixed * sine) * held.conj();
             let gain = along.re / (sine * held.norm_sqr());
             if gain.is_finite() {
                 found.push(gain);
             }
-        };
-        let real = RealGain {
-            on_circle: OnCircle::new(&self.fixed, multiple),
-            fixed: self.fixed.step.held,
-            held: self.held,
         };
         zeros(&real, PI, |angle, _| take(angle.min(PI)))?;
         if !multiple.is_multiple_of(2) {

@@ -75,12 +75,12 @@ impl SampledLoop {
     /// samples; infinite where |L| is 1 nowhere, NaN where that is not known.
     #[must_use]
     pub fn phase_margin(&self, multiple: u64) -> f64 {
-        let on_circle = OnCircle::new(self, multiple);
+        let unit = UnitLoop(OnCircle::new(self, multiple));
         let mut least = f64::INFINITY;
-        let found = zeros(&UnitLoop(OnCircle::new(self, multiple)), PI, |angle, _| {
+        let found = zeros(&unit, PI, |angle, _| {
             let angle = angle.min(PI);
-            let parts = on_circle.parts(angle);
-            let [held, _] = on_circle.value(self.step.held, angle);
+            let parts = unit.0.parts(angle);
+            let [held, _] = unit.0.value(self.step.held, angle);
             // −L = 2 s q / (p z^l w).
             let turned = held * parts.twice_sine[0] / (parts.open[0] * parts.turn[0]);
             least = least.min(arg(turned).abs());

@@ -6,8 +6,6 @@
 //! p z^l w = 2 s q,   z = e^(iφ)                                                               (2)
 //! ```
 
-use std::f64::consts::PI;
-
 use num_complex::Complex64;
 
 use super::SampledLoop;
@@ -67,10 +65,10 @@ impl<'l> OnCircle<'l> {
 
     /// Bounds up to `angle` on the size of c(z) and of its first and second slopes.
     pub(super) fn bounds(&self, c: Quadratic, angle: f64) -> [f64; 3] {
-        self.circle.bounds(c, angle.min(PI))
+        self.circle.bounds(c, angle)
     }
 
-    /// The same of p z^l.
+    /// Bounds up to `angle` on the size of p z^l and of its first and second slopes.
     pub(super) fn open_bounds(&self, angle: f64) -> [f64; 3] {
         let late = self.of.late as f64;
         times(
@@ -84,7 +82,7 @@ impl<'l> OnCircle<'l> {
         self.turns(1.0 + self.of.memory.abs())
     }
 
-    /// The same of 2 s.
+    /// |2 s| and the sizes of its first and second slopes at most.
     pub(super) fn sine_bounds(&self) -> [f64; 3] {
         self.turns(2.0)
     }

@@ -85,7 +85,7 @@ export class Thumbnails {
     }
   }
 
-  /** Whether a map has anything to be seen: one that has just begun is looked at when it has cells. */
+  /** Whether a map has anything to be seen: not one that has just begun. */
   #hasPicture({ axes, cells_done: done }) {
     return (axes ?? []).length > 0 && done !== 0;
   }
