@@ -113,8 +113,12 @@ test("a critical velocity that is superseded takes no time of the server", { ski
   const begun = cpu();
   await eventually(() => assert.ok(cpu() > begun + 0.1, "it is computed"));
   await show(page, `v=1&${LAW}`);
-  await page.waitForTimeout(500);
-  const before = cpu();
-  await page.waitForTimeout(500);
-  assert.ok(cpu() - before < 0.05, `${cpu() - before} s`);
+  // Half a second in which it is idle: what else the page asks for comes to an end at some time,
+  // while a critical velocity here takes a processor for far longer than is waited for.
+  await eventually(async () => {
+    const before = cpu();
+    await page.waitForTimeout(500);
+    const taken = cpu() - before;
+    assert.ok(taken < 0.05, `${taken} s`);
+  });
 });
