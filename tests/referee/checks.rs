@@ -7,31 +7,12 @@ use super::block::{Block, Event, Mode};
 use super::law::{Friction, Law};
 use super::pchip::Curve;
 use super::ramp::{self, End, Ramp};
-use super::setting::{FREE, Setting};
+use super::setting::Setting;
 use super::steps::Pace;
 use super::switch_on::{self, Fate};
 
-fn setting(law: Law, (alpha_v, alpha_n): (f64, f64), tau: f64, v0: f64) -> Setting {
-    Setting {
-        friction: Friction { law, mu_s: 1.0 },
-        mass: 1.0,
-        stiffness: 1.0,
-        load: 1.0,
-        alpha_v,
-        alpha_n,
-        tau,
-        memory: 0.0,
-        latency: 0.0,
-        sample_time: 0.0,
-        amplitude: 0.0,
-        damping: 0.0,
-        viscous: 0.0,
-        of_v: FREE,
-        of_load: FREE,
-        programme: Vec::new(),
-        v0,
-        switch_on: 0.0,
-    }
+fn setting(law: Law, gains: (f64, f64), tau: f64, v0: f64) -> Setting {
+    Setting::plain(Friction { law, mu_s: 1.0 }, gains, tau, v0)
 }
 
 fn never(setting: Setting) -> Setting {
@@ -41,7 +22,7 @@ fn never(setting: Setting) -> Setting {
     }
 }
 
-const LETTERS: Law = Law::Weakening { mu0: 0.5, v_s: 0.5 };
+const LETTERS: Law = Law::LETTERS;
 
 /// Events with times and elongations until `end`.
 fn events(block: &mut Block, end: f64) -> Vec<(Event, f64, f64)> {

@@ -95,7 +95,20 @@ pub(crate) struct Friction {
 /// Beyond so many v_s the flank of Stribeck's law is below rounding.
 const FLANK: f64 = 6.0;
 
+impl Law {
+    /// The letter's.
+    pub(crate) const LETTERS: Self = Self::Weakening { mu0: 0.5, v_s: 0.5 };
+}
+
 impl Friction {
+    /// The letter's law, with static friction of 1.
+    pub(crate) const fn of_letter() -> Self {
+        Self {
+            law: Law::LETTERS,
+            mu_s: 1.0,
+        }
+    }
+
     /// The piece that holds at `speed`, and above it where two of them meet.
     pub(crate) fn piece(&self, speed: f64) -> usize {
         match &self.law {

@@ -39,7 +39,7 @@ use block::{Block, Event};
 use crowd::{Tally, ask};
 use law::{Friction, Law};
 use random::{Chance, Start};
-use setting::{FREE, Setting};
+use setting::Setting;
 use steps::Pace;
 use switch_on::Fate;
 
@@ -171,26 +171,7 @@ fn motions_under_the_return_map() {
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
-        setting: Setting {
-            friction: Friction { law, mu_s },
-            mass: 1.0,
-            stiffness: 1.0,
-            load: 1.0,
-            alpha_v: gains.0,
-            alpha_n: gains.1,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
-            sample_time: 0.0,
-            amplitude: 0.0,
-            damping: 0.0,
-            viscous: 0.0,
-            of_v: FREE,
-            of_load: FREE,
-            programme: Vec::new(),
-            v0,
-            switch_on: 0.0,
-        },
+        setting: Setting::plain(Friction { law, mu_s }, gains, tau, v0),
         x_dot0: u,
         a0: a,
         horizon: 250.0,
@@ -295,10 +276,6 @@ fn chance_leaves_nothing_out() {
 /// and load control.
 #[test]
 fn starts_of_basins() {
-    let law = || Friction {
-        law: Law::Weakening { mu0: 0.5, v_s: 0.5 },
-        mu_s: 1.0,
-    };
     let mut starts = Vec::new();
     for (alpha_v, alpha_n, tau, v0) in [
         (-0.33, 0.0, 4.15, 0.35),
@@ -306,26 +283,7 @@ fn starts_of_basins() {
         (0.0, -7.0, 1.0, 0.118),
         (-0.33, 0.0, 4.15, 0.3),
     ] {
-        let setting = Setting {
-            friction: law(),
-            mass: 1.0,
-            stiffness: 1.0,
-            load: 1.0,
-            alpha_v,
-            alpha_n,
-            tau,
-            memory: 0.0,
-            latency: 0.0,
-            sample_time: 0.0,
-            amplitude: 0.0,
-            damping: 0.0,
-            viscous: 0.0,
-            of_v: FREE,
-            of_load: FREE,
-            programme: Vec::new(),
-            v0,
-            switch_on: 0.0,
-        };
+        let setting = Setting::plain(Friction::of_letter(), (alpha_v, alpha_n), tau, v0);
         for over in ["state", "phase"] {
             let sweep = format!(
                 "fields = [\"basin_share\"]\n[axes]\nmass = [1]\n[basin]\nover = \"{over}\"\n\

@@ -317,27 +317,8 @@ fn friction_in(mut friction: Friction, velocity: f64) -> Friction {
 /// A block under control whose critical velocity is asked for; M = κ = N0 = 1.
 pub(crate) fn problem(chance: &mut Chance) -> Setting {
     let friction = friction(chance);
-    let (alpha_v, alpha_n) = gains(chance);
-    Setting {
-        friction,
-        mass: 1.0,
-        stiffness: 1.0,
-        load: 1.0,
-        alpha_v,
-        alpha_n,
-        tau: chance.log(0.05, 10.0),
-        memory: 0.0,
-        latency: 0.0,
-        sample_time: 0.0,
-        amplitude: 0.0,
-        damping: 0.0,
-        viscous: 0.0,
-        of_v: FREE,
-        of_load: FREE,
-        programme: Vec::new(),
-        v0: 1.0,
-        switch_on: 0.0,
-    }
+    let gains = gains(chance);
+    Setting::plain(friction, gains, chance.log(0.05, 10.0), 1.0)
 }
 
 /// The same with memory, latency or both in the feedback.

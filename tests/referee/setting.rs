@@ -44,6 +44,40 @@ pub(crate) struct Corner {
 pub(crate) const FREE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Setting {
+    /// M = κ = N0 = 1 and the letter's feedback from t = 0 on, with nothing else.
+    pub(crate) fn plain(
+        friction: Friction,
+        (alpha_v, alpha_n): (f64, f64),
+        tau: f64,
+        v0: f64,
+    ) -> Self {
+        Self {
+            friction,
+            mass: 1.0,
+            stiffness: 1.0,
+            load: 1.0,
+            alpha_v,
+            alpha_n,
+            tau,
+            memory: 0.0,
+            latency: 0.0,
+            sample_time: 0.0,
+            amplitude: 0.0,
+            damping: 0.0,
+            viscous: 0.0,
+            of_v: FREE,
+            of_load: FREE,
+            v0,
+            programme: Vec::new(),
+            switch_on: 0.0,
+        }
+    }
+
+    /// The letter's Fig. 3(b).
+    pub(crate) fn fig3b() -> Self {
+        Self::plain(Friction::of_letter(), (0.0, -10.0), 0.5, 0.1)
+    }
+
     /// v where S is this, beside this v0.
     pub(crate) fn v(&self, v0: f64, signal: f64) -> f64 {
         clip(v0 + self.alpha_v * signal, self.of_v)

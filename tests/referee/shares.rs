@@ -10,9 +10,8 @@ use slipmap::sweep::events::Attended;
 
 use super::asked;
 use super::block::{Block, Event, Mode};
-use super::law::{Friction, Law};
 use super::random::Chance;
-use super::setting::{FREE, Setting};
+use super::setting::Setting;
 use super::steps::Pace;
 
 /// Starts of the referee under the return map, and under delayed feedback, which takes it longer;
@@ -20,36 +19,9 @@ use super::steps::Pace;
 const STARTS: [u32; 2] = [240, 48];
 const HORIZON: f64 = 80.0;
 
-/// The letter's Fig. 3(b).
-fn fig3b() -> Setting {
-    Setting {
-        friction: Friction {
-            law: Law::Weakening { mu0: 0.5, v_s: 0.5 },
-            mu_s: 1.0,
-        },
-        mass: 1.0,
-        stiffness: 1.0,
-        load: 1.0,
-        alpha_v: 0.0,
-        alpha_n: -10.0,
-        tau: 0.5,
-        memory: 0.0,
-        latency: 0.0,
-        sample_time: 0.0,
-        amplitude: 0.0,
-        damping: 0.0,
-        viscous: 0.0,
-        of_v: FREE,
-        of_load: FREE,
-        programme: Vec::new(),
-        v0: 0.1,
-        switch_on: 0.0,
-    }
-}
-
-/// The same under the return map, or under delayed feedback with limits where `sample_time` is 0.
+/// The letter's Fig. 3(b) under the return map, or under delayed feedback with limits where `sample_time` is 0.
 fn under(sample_time: f64, amplitude: f64) -> Setting {
-    let delayed = fig3b();
+    let delayed = Setting::fig3b();
     match sample_time > 0.0 {
         true => Setting {
             alpha_n: 1.0,
@@ -109,7 +81,7 @@ fn share(setting: &Setting, stick_slip: bool) -> [f64; 2] {
 
 #[test]
 fn shares_are_those_of_the_referee() {
-    let text = asked::law_and_parameters(&fig3b());
+    let text = asked::law_and_parameters(&Setting::fig3b());
     let spec: CaseSpec = text.parse().unwrap();
     for (sample_time, amplitude, stick_slip) in [
         (0.0, 0.1, false),
