@@ -17,6 +17,7 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::candidate::{Candidate, Seen};
+use crate::model::least_squares::LeastSquares;
 
 /// The size of residuals where values make no law: the search turns back.
 const NO_LAW: f64 = 1e6;
@@ -29,8 +30,6 @@ const AT_FIRST: usize = 1000;
 /// Where less than this is left of 1 − H_ii, a point alone determines a number, and nothing tells
 /// the error of that.
 const LEAST_LEFT: f64 = 0.02;
-/// JᵀJ with columns of length 1 is singular where a pivot is less than this.
-const SINGULAR: f64 = 1e-11;
 
 /// The points with their weights.
 #[derive(Debug, Clone, Copy)]
@@ -152,10 +151,8 @@ impl Minimum {
         let mut residuals = problem.at(&problem.values)?;
         for _ in 0..POLISH {
             let slopes = problem.slopes()?;
-            let Some(step) = Normal::of(&slopes).map(|of| of.solve(&slopes.tr_mul(&residuals)))
-            else {
-                break;
-            };
+            let Some(of) = linear(&slopes) else { break };
+            let step = DVector::from_vec(of.solve(residuals.as_slice()));
             let values = &problem.values - step;
             let better = problem
                 .at(&values)
@@ -181,58 +178,24 @@ impl Minimum {
             values: DVector::from_column_slice(&self.values),
         };
         let (residuals, slopes) = (problem.at(&problem.values)?, problem.slopes()?);
-        // (JᵀJ)⁻¹ Jᵀ, a column for each point.
-        let solved = Normal::of(&slopes)?.solve(&slopes.transpose());
-        let mut weighted = solved.clone();
-        for (i, mut column) in weighted.column_iter_mut().enumerate() {
-            let leverage = slopes.row(i).transpose().dot(&solved.column(i));
-            let left = 1.0 - leverage;
+        let of = linear(&slopes)?;
+        let mut covariance = DMatrix::zeros(slopes.ncols(), slopes.ncols());
+        for (i, residual) in residuals.iter().enumerate() {
+            let left = 1.0 - of.leverage(i);
             if left < LEAST_LEFT {
                 return None;
             }
             let grown = 0.5 * (1.0 / left + 1.0 / (left * left));
-            column *= residuals[i] * residuals[i] * grown;
+            // A column of (JᵀJ)⁻¹ Jᵀ.
+            let moved = DVector::from_vec(of.moved_by(i)) * *residual;
+            covariance.ger(grown, &moved, &moved, 1.0);
         }
-        Some(weighted * solved.transpose())
+        Some(covariance)
     }
 }
 
-/// JᵀJ, factored; its columns scaled to length 1.
-struct Normal {
-    scales: DVector<f64>,
-    factor: nalgebra::Cholesky<f64, Dyn>,
-}
-
-impl Normal {
-    fn of(slopes: &DMatrix<f64>) -> Option<Self> {
-        let scales = DVector::from_iterator(slopes.ncols(), slopes.column_iter().map(|c| c.norm()));
-        if !scales.iter().all(|s| s.is_finite() && *s > 0.0) {
-            return None;
-        }
-        let scaled = slopes * DMatrix::from_diagonal(&scales.map(|s| 1.0 / s));
-        let factor = nalgebra::Cholesky::new(scaled.tr_mul(&scaled))?;
-        let pivots = factor.l_dirty().diagonal();
-        let regular = pivots.iter().all(|p| p * p > SINGULAR);
-        regular.then_some(Self { scales, factor })
-    }
-
-    /// (JᵀJ)⁻¹ of columns.
-    fn solve<C: nalgebra::Dim>(
-        &self,
-        of: &nalgebra::OMatrix<f64, Dyn, C>,
-    ) -> nalgebra::OMatrix<f64, Dyn, C>
-    where
-        nalgebra::DefaultAllocator: nalgebra::allocator::Allocator<Dyn, C>,
-    {
-        let mut solved = of.clone();
-        let divide = |m: &mut nalgebra::OMatrix<f64, Dyn, C>| {
-            for (mut row, scale) in m.row_iter_mut().zip(self.scales.iter()) {
-                row /= *scale;
-            }
-        };
-        divide(&mut solved);
-        self.factor.solve_mut(&mut solved);
-        divide(&mut solved);
-        solved
-    }
+/// The linear problem of columns.
+fn linear(slopes: &DMatrix<f64>) -> Option<LeastSquares> {
+    let columns = slopes.column_iter();
+    LeastSquares::of(columns.map(|column| column.iter().copied().collect()))
 }

@@ -20,6 +20,7 @@
 //! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone; B and A of D
 //! - `known_cases`: cases with known answers, for tests and benches alike
 //! - `law`: laws of kinetic friction, one file each: value, slope, their bounds, series
+//! - `least_squares`: linear least squares, for fits of laws and of return maps
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
 //! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical
 //!   stiffness
@@ -35,6 +36,7 @@ mod feedback;
 pub(crate) mod groups;
 pub mod known_cases;
 pub mod law;
+pub(crate) mod least_squares;
 mod oscillator;
 pub(crate) mod rate_and_state;
 mod return_map;

@@ -10,12 +10,11 @@
 
 use super::motion::{Accuracy, Event, Motion, Parameters};
 use super::return_map::Steering;
+use crate::model::least_squares::LeastSquares;
 use crate::model::{Record, Recursion};
 
-/// The numbers of the recursion.
-const NUMBERS: usize = 5;
-/// A column is told from those before it where more than this share of it is left.
-const TOLD_APART: f64 = 1e-6;
+/// What is left of 1 − t₁ − t₂ has to be more than this for a* to be told.
+const LEAST_LEFT: f64 = 1e-6;
 /// What is drawn for a record is drawn for no motion.
 const OF_RECORDS: u64 = 0x7265_636f_7264;
 
@@ -83,56 +82,26 @@ fn read(p: &Parameters, accuracy: Accuracy, record: Record) -> Vec<Read> {
 fn fitted(read: &[Read]) -> Option<Recursion> {
     let n = read.len() as f64;
     let mean = read.iter().map(|[y, _]| y).sum::<f64>() / n;
-    let rows: Vec<[f64; NUMBERS + 1]> = read
-        .windows(3)
-        .map(|of| {
-            let [y0, y1, y2] = [0, 1, 2].map(|i: usize| of[i][0] - mean);
-            [1.0, y1, y0, of[1][1], of[0][1], y2]
-        })
-        .collect();
-    let [constant, t1, t2, g1, g2] = least_squares(rows)?;
+    let column = |of: fn(&[Read], f64) -> f64| -> Vec<f64> {
+        let windows = read.windows(3);
+        windows.map(|window| of(window, mean)).collect()
+    };
+    let columns = [
+        column(|_, _| 1.0),
+        column(|of, mean| of[1][0] - mean),
+        column(|of, mean| of[0][0] - mean),
+        column(|of, _| of[1][1]),
+        column(|of, _| of[0][1]),
+    ];
+    let numbers = LeastSquares::of(columns)?.solve(&column(|of, mean| of[2][0] - mean));
+    let [constant, t1, t2, g1, g2] = numbers.try_into().ok()?;
     let fall = 1.0 - t1 - t2;
     let found = Recursion {
         readings: [t1, t2],
         loads: [g1, g2],
         rest: mean + constant / fall,
     };
-    (fall.abs() > TOLD_APART && found.rest.is_finite()).then_some(found)
-}
-
-/// The length of a column.
-fn norm(rows: &[[f64; NUMBERS + 1]], column: usize) -> f64 {
-    let squares = rows.iter().map(|row| row[column] * row[column]);
-    squares.sum::<f64>().sqrt()
-}
-
-/// The numbers that times the first columns come closest to the last one, by reflections of
-/// Householder.
-fn least_squares(mut rows: Vec<[f64; NUMBERS + 1]>) -> Option<[f64; NUMBERS]> {
-    let mut diagonal = [0.0; NUMBERS];
-    for i in 0..NUMBERS {
-        let (whole, left) = (norm(&rows, i), norm(&rows[i..], i));
-        if left.is_nan() || left <= TOLD_APART * whole {
-            return None;
-        }
-        diagonal[i] = if rows[i][i] > 0.0 { -left } else { left };
-        rows[i][i] -= diagonal[i];
-        let length = norm(&rows[i..], i);
-        let reflected: Vec<f64> = rows[i..].iter().map(|row| row[i]).collect();
-        for j in i + 1..=NUMBERS {
-            let along = reflected.iter().zip(&rows[i..]);
-            let along = along.map(|(v, row)| v * row[j]).sum::<f64>();
-            for (v, row) in reflected.iter().zip(&mut rows[i..]) {
-                row[j] -= 2.0 * along / (length * length) * v;
-            }
-        }
-    }
-    let mut found = [0.0; NUMBERS];
-    for i in (0..NUMBERS).rev() {
-        let known = (i + 1..NUMBERS).map(|j| rows[i][j] * found[j]).sum::<f64>();
-        found[i] = (rows[i][NUMBERS] - known) / diagonal[i];
-    }
-    Some(found)
+    (fall.abs() > LEAST_LEFT && found.rest.is_finite()).then_some(found)
 }
 
 #[cfg(test)]
