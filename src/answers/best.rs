@@ -4,23 +4,18 @@
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 
-use super::margins::beyond_letter;
-use crate::linear::best::{
-    self, Best, General, Letter, Optimum, Place, Region, Rig, Robust, Search, SearchedGain,
-};
+pub use super::robust::{RobustSetting, robust_setting};
+use crate::linear::best::{self, Best, General, Letter, Optimum, Region, Search, SearchedGain};
 use crate::linear::lobes::minimal_negative_load_gain;
-use crate::linear::margins::Changes;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
-use crate::setting::best_plane::{parameter_of, searched_gain};
+use crate::setting::best_plane::searched_gain;
 use crate::setting::no_answer::NoAnswer;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::Evaluation;
 use crate::setting::values::Setting;
 
-/// What a sample time has to be where robust settings are searched.
-const NOT_ROBUST: &str = "0 where a robust setting is searched (robust): leave one of them out";
 /// Largest |b| for which best settings are searched.
 const STEEPEST: f64 = 1e4;
 
@@ -73,11 +68,11 @@ pub struct BestSettings {
 /// Converts dimensionless gains and delays to physical ones. Systems from files are as they are.
 pub(super) struct Scales {
     pub(super) gain: f64,
-    time: f64,
+    pub(super) time: f64,
 }
 
 impl Scales {
-    fn of(setting: &Setting, searched: &Quantity) -> Result<Self, ModelError> {
+    pub(super) fn of(setting: &Setting, searched: &Quantity) -> Result<Self, ModelError> {
         let oscillator = setting.oscillator()?;
         let time = oscillator.time_unit();
         Ok(Self {
@@ -248,51 +243,8 @@ pub fn best_settings(
     Ok(scales.settings(&found, ranges))
 }
 
-/// The best setting under joint errors of gain, delay and μ′.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RobustSetting {
-    /// The largest relative errors of gain, delay and μ′.
-    pub spread: Changes,
-    /// The setting, with its slowest decay under these errors; in the units of the parameters.
-    pub robust: Robust,
-    /// The slowest decay around the setting of fastest decay, under the same errors, and whether it
-    /// is proved.
-    pub worst_of_best: (f64, bool),
-}
-
-/// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
-/// relative errors of gain, delay and μ′ of up to `spread`, those of gain and delay less than 1.
-/// None for the latter where no setting stays stable. Once `stop` is set, the answer comes soon but
-/// is meaningless.
-///
-/// # Errors
-/// As [`best_settings`], and under friction with a state, of which the slope μ′ does not say all.
-pub fn robust_setting(
-    setting: &Setting,
-    gain: SearchedGain,
-    ranges: &Ranges,
-    spread: Changes,
-    stop: &Stop,
-) -> Result<(BestSettings, Option<RobustSetting>), NoAnswer> {
-    let searched = parameter_of(gain).into();
-    acting(setting, &searched).check_continuous(NOT_ROBUST)?;
-    let scales = Scales::of(setting, &searched)?;
-    setting.check_of_letter(&[], "")?;
-    let letter = letter(setting, gain)?;
-    let found = scales.best(Some(letter), setting, &searched, ranges, stop)?;
-    let rig = Rig {
-        letter,
-        // Also where the gains of `setting` are 0: they are searched.
-        beyond: beyond_letter(&acting(setting, &searched), &setting.oscillator()?),
-    };
-    let search = scales.search(rig, ranges);
-    let robust = best::robust(&search, &found, spread, stop);
-    let robust = robust.map(|robust| scales.robust(&search, &found, &robust, spread, stop));
-    Ok((scales.settings(&found, ranges), robust))
-}
-
 impl Scales {
-    fn search<F>(&self, family: F, ranges: &Ranges) -> Search<F> {
+    pub(super) fn search<F>(&self, family: F, ranges: &Ranges) -> Search<F> {
         Search {
             family,
             gains: scaled(ranges.gain, 1.0 / self.gain),
@@ -301,7 +253,7 @@ impl Scales {
     }
 
     /// The best settings, of the letter's own feedback or of any linear model.
-    fn best(
+    pub(super) fn best(
         &self,
         letter: Option<Letter>,
         setting: &Setting,
@@ -314,33 +266,6 @@ impl Scales {
                 Ok(best::best(&self.search(family, ranges), stop))
             }
             _ => self.best_of_any(setting, searched, ranges, stop),
-        }
-    }
-
-    /// A robust setting beside the best one.
-    fn robust(
-        &self,
-        search: &Search<Rig>,
-        found: &Best,
-        robust: &Robust,
-        spread: Changes,
-        stop: &Stop,
-    ) -> RobustSetting {
-        let best = Place {
-            gain: found.overall.gain,
-            tau: found.overall.tau,
-        };
-        let (worst, proved) = best::worst_around(search, best, spread, stop);
-        RobustSetting {
-            spread,
-            robust: Robust {
-                gain: robust.gain * self.gain,
-                tau: robust.tau * self.time,
-                abscissa: robust.abscissa / self.time,
-                worst_abscissa: robust.worst_abscissa / self.time,
-                ..*robust
-            },
-            worst_of_best: (worst / self.time, proved),
         }
     }
 
@@ -383,7 +308,7 @@ impl Scales {
         Ok(best::best(&search, stop))
     }
 
-    fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
+    pub(super) fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
         let region = |region: &Region| BestRegion {
             ranges: Ranges {
                 gain: scaled(region.gains, self.gain),

@@ -8,6 +8,7 @@
 //! - `margins`: margins of a setting, in its own units
 //! - `measure`: friction measured through control, at one v0 of an experiment
 //! - `reached`: whether a motion reaches sliding by a time
+//! - `robust`: the best setting that stands errors of gain, delay and μ′
 //! - `robust_to_fit`: the setting that is most robust against the errors of a fit
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
@@ -24,6 +25,7 @@ pub mod drawn_laws;
 pub mod margins;
 pub mod measure;
 pub mod reached;
+mod robust;
 pub mod robust_to_fit;
 pub mod samples;
 mod sobol;

@@ -1,6 +1,7 @@
 //! The setting that is most robust against what the errors of a fitted friction law leave open.
 
-use super::best::{BestSettings, Ranges, RobustSetting, robust_setting};
+use super::best::{BestSettings, Ranges};
+use super::robust::{RobustSearch, RobustSetting};
 use crate::linear::best::SearchedGain;
 use crate::linear::margins::Changes;
 use crate::model::ModelError;
@@ -53,7 +54,7 @@ pub fn error_of_fit(setting: &Setting, gain: SearchedGain) -> Result<Option<Chan
 /// setting stands. Once `stop` is set, the answer comes soon but is meaningless.
 ///
 /// # Errors
-/// As [`robust_setting`].
+/// As [`super::robust::robust_setting`].
 pub fn robust_to_fit(
     setting: &Setting,
     gain: SearchedGain,
@@ -61,23 +62,23 @@ pub fn robust_to_fit(
     error: Changes,
     stop: &Stop,
 ) -> Result<RobustToFit, NoAnswer> {
-    let with = |errors: f64| -> Result<RobustToFit, NoAnswer> {
+    let search = RobustSearch::of(setting, gain, ranges, stop)?;
+    let with = |errors: f64| {
         let spread = error.map(|part| errors * part);
-        let (best, robust) = robust_setting(setting, gain, ranges, spread, stop)?;
-        Ok(RobustToFit {
+        RobustToFit {
             errors,
             spread,
-            best,
-            robust,
-        })
+            best: search.best(),
+            robust: search.standing(spread, stop),
+        }
     };
-    let mut found = with(MOST_ERRORS)?;
+    let mut found = with(MOST_ERRORS);
     if found.robust.is_some() {
         return Ok(found);
     }
     let (mut stands, mut not) = (0.0, MOST_ERRORS);
     for _ in 0..HALVINGS {
-        let next = with(0.5 * (stands + not))?;
+        let next = with(0.5 * (stands + not));
         match next.robust {
             Some(_) => {
                 stands = next.errors;

@@ -1,7 +1,8 @@
 //! The gain and the delay under which a v0 is measured: those of the file, or the best.
 
 use super::foreseen::{Experiment, Prospect};
-use crate::answers::best::{Ranges, best_settings, default_ranges, robust_setting};
+use crate::answers::best::{best_settings, default_ranges};
+use crate::answers::robust::{RobustSearch, RobustSetting};
 use crate::answers::vc::VcProblem;
 use crate::critical::CriticalWindows;
 use crate::linear::MarginalTolerance;
@@ -97,16 +98,13 @@ impl Experiment {
         let searched = continuous(setting);
         let quantity = Quantity::Known(parameter_of(gain));
         let ranges = default_ranges(&searched, &quantity)?;
-        let robust = |spread: f64| robust_setting(&searched, gain, &ranges, [spread; 3], stop);
+        let search = RobustSearch::of(&searched, gain, &ranges, stop)?;
         let mut first = None;
         for spread in SPREADS {
-            let (_, Some(found)) = robust(spread)? else {
+            let Some(found) = search.standing([spread; 3], stop) else {
                 break;
             };
-            let place = (found.robust.gain, found.robust.tau);
-            let candidate = self.candidate(setting, gain, place, v0, stop)?;
-            let candidate = candidate.map(|of| of.standing(spread));
-            match candidate {
+            match self.robust(setting, gain, &found, v0, stop)? {
                 Some(found) if found.prospect == Prospect::Safe => return Ok(Some(found)),
                 found => first = first.or(found),
             }
@@ -114,7 +112,7 @@ impl Experiment {
         if first.is_some() || stop.is_set() {
             return Ok(first);
         }
-        let less = self.less_robust(setting, gain, (&searched, &ranges), v0, stop)?;
+        let less = self.less_robust(setting, gain, &search, v0, stop)?;
         match less {
             None if setting.get(Parameter::SampleTime) > 0.0 && !stop.is_set() => {
                 self.fastest_of_samples(setting, gain, v0, stop)
@@ -145,27 +143,38 @@ impl Experiment {
         &self,
         setting: &Setting,
         gain: SearchedGain,
-        (searched, ranges): (&Setting, &Ranges),
+        search: &RobustSearch,
         v0: f64,
         stop: &Stop,
     ) -> Result<Option<Candidate>, NoAnswer> {
-        let mut fastest = None;
+        let fastest = search.best().overall;
+        if fastest.relaxation_time().is_none() {
+            return Ok(None);
+        }
         for spread in SMALLER {
-            let (best, robust) = robust_setting(searched, gain, ranges, [spread; 3], stop)?;
-            fastest = Some((best.overall.gain, best.overall.tau));
-            if best.overall.relaxation_time().is_none() {
-                return Ok(None);
-            }
-            let Some(found) = robust else { continue };
-            let place = (found.robust.gain, found.robust.tau);
-            if let Some(found) = self.candidate(setting, gain, place, v0, stop)? {
-                return Ok(Some(found.standing(spread)));
+            let Some(found) = search.standing([spread; 3], stop) else {
+                continue;
+            };
+            if let Some(found) = self.robust(setting, gain, &found, v0, stop)? {
+                return Ok(Some(found));
             }
         }
-        match fastest {
-            Some(place) => self.candidate(setting, gain, place, v0, stop),
-            None => Ok(None),
-        }
+        self.candidate(setting, gain, (fastest.gain, fastest.tau), v0, stop)
+    }
+
+    /// A robust setting at v0 with the spread that it stands; none where sliding is not stable with
+    /// its delay rounded to readings.
+    fn robust(
+        &self,
+        setting: &Setting,
+        gain: SearchedGain,
+        found: &RobustSetting,
+        v0: f64,
+        stop: &Stop,
+    ) -> Result<Option<Candidate>, NoAnswer> {
+        let place = (found.robust.gain, found.robust.tau);
+        let candidate = self.candidate(setting, gain, place, v0, stop)?;
+        Ok(candidate.map(|of| of.standing(found.spread[0])))
     }
 
     /// A gain and a delay at v0, the delay rounded to readings; none where sliding is not stable
