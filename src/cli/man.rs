@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::store::{Output, StoreError};
+use crate::store::Output;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 
@@ -29,13 +29,7 @@ fn page(command: Command) -> Result<String, Failure> {
 
 /// Writes a page completely, or leaves the earlier file in place.
 fn write(path: &Path, page: &str) -> Result<(), Failure> {
-    let output = Output::claim(path)?;
-    std::fs::write(output.part(), page).map_err(|source| StoreError::Io {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(output.commit()?)
+    Ok(Output::claim(path)?.fill(page)?)
 }
 
 /// Prints a page, or writes all pages.

@@ -7,7 +7,7 @@ use crate::letter::{
     GENERATOR, GENERATOR_OF_COMPARE, LetterError, Reproduction, Verdict, Workshop, reproduce,
 };
 use crate::report::progress::Progress;
-use crate::store::{Output, StoreError, regular};
+use crate::store::{Output, regular};
 use crate::sweep::events::Attended;
 use crate::sweep::{Event, Observer};
 
@@ -88,15 +88,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let (version, revision) = (&made.program_version, &made.git_revision);
         let (time, _) = made.history.split_once(' ').unwrap_or_default();
         let by = format!("slipmap {version} ({revision}), {time}");
-        let text = found.page(&by, args.quick);
-        let path = output.path().to_owned();
-        let written = std::fs::write(output.part(), text);
-        written.map_err(|source| StoreError::Io {
-            action: "write",
-            path,
-            source,
-        })?;
-        output.commit()?;
+        output.fill(found.page(&by, args.quick))?;
     }
     if args.json {
         let inputs = Inputs::default().and("quick", args.quick);

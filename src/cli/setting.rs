@@ -7,7 +7,7 @@ use crate::setting::Setting;
 use crate::setting::point_file::{PointOf, PointSpec};
 use crate::setting::setting_text::setting_text;
 use crate::setting::units::Units;
-use crate::store::{Output, StoreError, regular};
+use crate::store::{Output, regular};
 
 use super::failure::Failure;
 use super::output::{warn_beyond_curve, warn_of_idle_delay};
@@ -80,11 +80,5 @@ pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), 
     };
     let text = setting_text(setting, units, |_| true);
     let text = format!("{HEAD}; {takers}\n\n{text}");
-    let output = Output::claim(path)?;
-    std::fs::write(output.part(), text).map_err(|source| StoreError::Io {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(output.commit()?)
+    Ok(Output::claim(path)?.fill(text)?)
 }

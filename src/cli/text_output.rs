@@ -62,6 +62,39 @@ impl<'p> To<'p> {
         Ok(Self::File(path))
     }
 
+    /// Claims the file, before work whose result it is to hold.
+    ///
+    /// # Errors
+    /// When no file can be written there.
+    pub(super) fn claim(self) -> Result<Claimed, Failure> {
+        Ok(match self {
+            Self::StandardOutput => Claimed::StandardOutput,
+            Self::File(path) => Claimed::File(Output::claim(path)?),
+        })
+    }
+
+    /// Claims the file, and writes it as [`Claimed::write`] does.
+    ///
+    /// # Errors
+    /// As both.
+    pub(super) fn write<T: Send>(
+        self,
+        signals: &Signals,
+        message: &str,
+        write: impl FnOnce(&mut dyn Write, &AtomicBool) -> Result<T, TableError>,
+    ) -> Result<T, Failure> {
+        self.claim()?.write(signals, message, write)
+    }
+}
+
+/// A destination that is this process's own.
+#[derive(Debug)]
+pub(super) enum Claimed {
+    StandardOutput,
+    File(Output),
+}
+
+impl Claimed {
     /// Writes the text made by `write`, which checks a stop flag from time to time. `message`: the
     /// message after a signal.
     ///
@@ -73,7 +106,7 @@ impl<'p> To<'p> {
         message: &str,
         write: impl FnOnce(&mut dyn Write, &AtomicBool) -> Result<T, TableError>,
     ) -> Result<T, Failure> {
-        let path = match self {
+        let output = match self {
             // A reader that stops reading blocks the writing; a signal still ends it.
             Self::StandardOutput => {
                 let mut out = std::io::stdout().lock();
@@ -84,16 +117,15 @@ impl<'p> To<'p> {
                     other => failure(other, Path::new(STANDARD_OUTPUT), signals, message),
                 });
             }
-            Self::File(path) => path,
+            Self::File(output) => output,
         };
-        let output = Output::claim(path)?;
         let written = || -> Result<T, TableError> {
             let mut out = BufWriter::new(File::create_new(output.part())?);
             let written = write(&mut out, &signals.stop)?;
             out.flush()?;
             Ok(written)
         };
-        let written = written().map_err(|error| failure(error, path, signals, message))?;
+        let written = written().map_err(|error| failure(error, output.path(), signals, message))?;
         output.commit()?;
         Ok(written)
     }

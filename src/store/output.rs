@@ -81,6 +81,15 @@ impl Output {
         &self.part
     }
 
+    /// Writes a whole text, and gives it its final name.
+    ///
+    /// # Errors
+    /// As [`Output::commit`], and when the text cannot be written.
+    pub(crate) fn fill(self, text: impl AsRef<[u8]>) -> Result<(), StoreError> {
+        fs::write(&self.part, text).map_err(StoreError::io("write", &self.path))?;
+        self.commit()
+    }
+
     /// Makes the written file durable and gives it its final name. It replaces the file that stood
     /// there and takes over its permissions.
     ///
@@ -127,6 +136,23 @@ mod tests {
         second.commit().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_text_is_filled_in_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("page.html");
+        Output::claim(&path).unwrap().fill("whole").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
+        let output = Output::claim(&path).unwrap();
+        fs::create_dir(output.part()).unwrap();
+        let error = output.fill("half").unwrap_err();
+        let told = error.to_string();
+        assert!(
+            told.contains("page.html") && !told.contains("part"),
+            "{told}"
+        );
+        assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! The file of a picture: its format, from its name, and whether it may replace another picture.
 
-use std::fs;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +8,7 @@ use super::pdf;
 use super::render;
 use super::scene::Scene;
 use crate::report::visible::visible_line;
-use crate::store::{Output, StoreError, regular};
+use crate::store::{Output, regular};
 
 /// The most cells per axis: more would not show in a bitmap, and would make files of shapes too
 /// large.
@@ -66,13 +65,7 @@ impl Picture {
     /// When the file cannot be written.
     pub fn save(self) -> Result<(), PictureError> {
         let Self { bytes, path, .. } = self;
-        let output = Output::claim(&path)?;
-        fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
-            action: "write",
-            path,
-            source,
-        })?;
-        Ok(output.commit()?)
+        Ok(Output::claim(&path)?.fill(bytes)?)
     }
 
     /// Writes the file under a name that the user did not choose. It replaces only an earlier
