@@ -21,7 +21,7 @@ use super::run::{default_threads, parse_threads};
 use super::say;
 use super::signals::Signals;
 use super::sweep_file::read_experiment;
-use super::text_output::To;
+use super::text_output::{Claimed, To};
 
 /// Time between two notes of how far it is.
 const BETWEEN_NOTES: Duration = Duration::from_secs(10);
@@ -68,6 +68,8 @@ pub(super) fn described() -> AnswerSchema {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let to = args.to()?;
+    // Before the work, so that a name that cannot be written fails at once.
+    let to = to.map(To::claim).transpose()?;
     let spec = read_experiment(&args.experiment)?;
     warn_beyond_curve(spec.setting.found_beyond_curve("v0", &spec.v0, &spec.units));
     let threads = args.threads.unwrap_or_else(default_threads);
@@ -88,8 +90,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let measured = foretold.measured(threads, attended).map_err(failed)?;
     if let Some(to) = to {
-        let rows = to.write(&signals, NONE, |out, _| write_measured(&measured, out))?;
-        if let To::StandardOutput = to {
+        let plain = matches!(to, Claimed::StandardOutput);
+        let units = &foretold.spec().units;
+        let rows = to.write(&signals, NONE, |out, _| {
+            write_measured(&measured, units, out)
+        })?;
+        if plain {
             return Ok(());
         }
         args.tell(&foretold, &measured)?;

@@ -18,8 +18,9 @@ use super::output::tell_dimensionless;
 const MOST_NAMED: usize = 8;
 /// Differences from the law below this are rounding.
 const ROUNDED: f64 = 1e-11;
-/// The width of a column.
+/// The least width of a column, and the blanks before what is wider.
 const WIDTH: usize = 13;
+const BETWEEN: usize = 2;
 
 /// What controls: `load`, `velocity` or `both`.
 pub(super) fn control(spec: &ExperimentSpec) -> &'static str {
@@ -94,32 +95,23 @@ pub(super) fn print(
     inputs_line::print(out, &setting, &spec.units, &left_out)?;
     let velocity = unit_behind(&spec.units.of_parameter(Parameter::V0));
     let v0 = format!("v0{velocity}");
-    row(
-        out,
-        &[
-            &v0,
-            "mu_k",
-            "error",
-            "law",
-            "off",
-            "expected",
-            "uncontrolled",
-        ],
-        "settled",
-    )?;
+    let titles = ["mu_k", "error", "law", "off", "expected", "uncontrolled"];
+    let mut table = Table::titled([&*v0].into_iter().chain(titles), "settled");
     for point in &measured.points {
         let number = |value: f64| digits.of(value);
         let cells = [
             number(point.v0),
             number(point.mu_k),
-            small(point.mu_k_error),
+            error(point),
             number(point.law),
             small(point.off),
             small(point.bias()),
             number(point.uncontrolled),
         ];
-        row(out, &cells, &settled(point, measured.repeats))?;
+        table.row(cells, settled(point, measured.repeats));
     }
+    table.print(out)?;
+    print_bound(out, measured)?;
     if measured.repeats > 1 {
         print_repeats(out, &v0, measured, digits)?;
     }
@@ -139,7 +131,7 @@ fn print_repeats(
         "standard deviation of one of {} repeats",
         measured.repeats
     )?;
-    row(out, &[v0, "found", "predicted"], "found/predicted")?;
+    let mut table = Table::titled([v0, "found", "predicted"], "found/predicted");
     for point in &measured.points {
         let predicted = point.predicted.as_ref().map_or(f64::NAN, |of| of.error);
         let cells = [digits.of(point.v0), small(point.scatter), small(predicted)];
@@ -147,9 +139,22 @@ fn print_repeats(
             true => rounded(point.scatter / predicted, 2),
             false => "none".to_owned(),
         };
-        row(out, &cells, &share)?;
+        table.row(cells, share);
     }
-    Ok(())
+    table.print(out)
+}
+
+/// Says what `<=` of an error means, where there is one.
+fn print_bound(out: &mut impl Write, measured: &Measurement) -> std::io::Result<()> {
+    match measured.points.iter().find_map(bound) {
+        Some(bound) => writeln!(
+            out,
+            "readings have a resolution and no noise: each mean is off by up to half a step, {}, \
+             which is no random error, and which no average and no repeat lessens",
+            small(bound)
+        ),
+        None => Ok(()),
+    }
 }
 
 /// Writes the setting of every v0.
@@ -173,11 +178,12 @@ fn print_settings(
         &*alpha_v,
         &*alpha_n,
         &*tau,
+        "spread",
         "relaxation",
         "v_c",
         "wait",
     ];
-    row(out, &titles, "average")?;
+    let mut table = Table::titled(titles, "average");
     for point in &measured.points {
         let or_none = |value: Option<f64>| value.map_or("none".to_owned(), |of| digits.of(of));
         let cells = [
@@ -185,20 +191,59 @@ fn print_settings(
             or_none(point.alpha_v),
             or_none(point.alpha_n),
             or_none(point.tau),
+            or_none(point.spread),
             or_none(point.abscissa.map(|abscissa| -1.0 / abscissa)),
             digits.of(point.vc),
             digits.of(point.wait),
         ];
-        row(out, &cells, &digits.of(point.average))?;
+        table.row(cells, digits.of(point.average));
     }
-    Ok(())
+    table.print(out)
 }
 
-fn row(out: &mut impl Write, cells: &[impl AsRef<str>], last: &str) -> std::io::Result<()> {
-    for cell in cells {
-        write!(out, "{:>WIDTH$}", cell.as_ref())?;
+/// Rows of cells, with a text behind each.
+struct Table(Vec<(Vec<String>, String)>);
+
+impl Table {
+    fn titled<'t>(titles: impl IntoIterator<Item = &'t str>, last: &str) -> Self {
+        let titles = titles.into_iter().map(str::to_owned).collect();
+        Self(vec![(titles, last.to_owned())])
     }
-    writeln!(out, "  {last}")
+
+    fn row(&mut self, cells: impl Into<Vec<String>>, last: String) {
+        self.0.push((cells.into(), last));
+    }
+
+    /// Writes the rows, in columns that are wider than their texts.
+    fn print(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let width = |column: usize| {
+            let cells = self.0.iter().filter_map(|(cells, _)| cells.get(column));
+            let longest = cells.map(|cell| cell.chars().count()).max().unwrap_or(0);
+            WIDTH.max(longest + BETWEEN)
+        };
+        let widths: Vec<usize> = (0..self.0[0].0.len()).map(width).collect();
+        for (cells, last) in &self.0 {
+            for (cell, width) in cells.iter().zip(&widths) {
+                write!(out, "{cell:>width$}")?;
+            }
+            writeln!(out, "  {last}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The most by which rounding biases a mean, where it is no random error.
+fn bound(point: &MeasuredV0) -> Option<f64> {
+    let bound = point.predicted.as_ref()?.rounding_bound;
+    Some(bound).filter(|bound| bound.is_finite())
+}
+
+/// The error of a mean, a standard error or a bound.
+fn error(point: &MeasuredV0) -> String {
+    match bound(point) {
+        Some(bound) => format!("<= {}", small(bound)),
+        None => small(point.mu_k_error),
+    }
 }
 
 /// A small number beside others: three digits, and 0 for rounding.
@@ -222,14 +267,25 @@ fn sentence(spec: &ExperimentSpec, measured: &Measurement) -> String {
         _ => "load control",
     };
     let setting = match spec.chosen {
-        Chosen::Given => "with the setting given",
-        Chosen::Best(_) => "each with its best robust setting",
+        Chosen::Given => "with the setting given".to_owned(),
+        Chosen::Best(_) => best(measured),
     };
     let repeats = match spec.repeats {
         1 => String::new(),
         repeats => format!(", {} times", Shown(f64::from(repeats))),
     };
     format!("mu_k is measured at {settled} under {control}, {setting}{repeats}")
+}
+
+/// Which best setting each v0 has: a robust one, where it stands a spread.
+fn best(measured: &Measurement) -> String {
+    let count = |of: fn(&&MeasuredV0) -> bool| measured.points.iter().filter(of).count();
+    let set = count(|point| point.tau.is_some());
+    match count(|point| point.spread.is_some()) {
+        _ if set == 0 => "none of which has a setting".to_owned(),
+        robust if robust == set => "each with its best robust setting".to_owned(),
+        robust => format!("each with its best setting, which is robust at {robust} of {set}"),
+    }
 }
 
 /// Whether a v0 settled, or why not.

@@ -122,8 +122,9 @@ pub struct MeasuredV0 {
     /// short, as where N reached 0.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub mu_k: f64,
-    /// The standard error that is predicted of it, from noise and resolution of the readings; 0
-    /// without them, null where sliding is not stable.
+    /// The standard error that is predicted of it: the random one of `predicted.error`, and
+    /// `predicted.rounding`, which is the same in all repeats; 0 where readings are exact, null
+    /// where sliding is not stable.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub mu_k_error: f64,
     /// Whether the block slid at v0 while it was averaged, in every repeat.
@@ -182,11 +183,16 @@ pub struct MeasuredV0 {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct PredictedErrors {
     /// The standard error of one repeat from noise, and from rounding where noise makes it random;
-    /// null where the loop remembers too many readings.
+    /// 0 without noise, null where the loop remembers too many readings.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub error: f64,
-    /// The standard error from rounding that noise does not make random, the same in all repeats.
+    /// The standard error from rounding that noise does not make random, the same in all repeats:
+    /// a bias, of which this is the root mean square over all elongations.
     pub rounding: f64,
+    /// The most that this bias can be where there is no noise, half a step; null with noise, or
+    /// without rounding.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub rounding_bound: f64,
     /// The bias from noise and rounding, of second order; null where `error` is.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub bias_of_noise: f64,
@@ -215,6 +221,7 @@ impl MeasuredV0 {
             predicted: foreseen.is_stable().then_some(PredictedErrors {
                 error: predicted.error,
                 rounding: predicted.rounding,
+                rounding_bound: predicted.rounding_bound,
                 bias_of_noise: predicted.bias_of_noise,
                 bias_of_drift: predicted.bias_of_drift,
             }),

@@ -230,15 +230,17 @@ fn a_drift_moves_the_mean_as_predicted() {
     }
 }
 
-/// Rounding without noise: the mean is off by no more than half a step, and the error that is told
-/// is of that size.
+/// Rounding without noise: the mean is off by no more than half a step, which is told as a bound, and
+/// no error is random; the error that is told is the root mean square of the bias.
 #[test]
 fn rounding_without_noise_is_told() {
     let fixed = "sample_time = 0.05\nresolution = 0.0001";
     for point in measured("v0 = [0.1, 0.3, 0.7]\n", LETTER, fixed, 0) {
         assert!(point.settled && point.off.abs() < 0.5001e-4, "{point:?}");
         assert!((predicted(&point).rounding / 1e-4 - 0.288675).abs() < 1e-6);
-        assert!(point.mu_k_error >= predicted(&point).rounding);
+        assert_eq!(predicted(&point).error, 0.0);
+        assert_eq!(predicted(&point).rounding_bound, 0.5e-4);
+        assert_eq!(point.mu_k_error, predicted(&point).rounding);
     }
 }
 

@@ -121,6 +121,134 @@ fn answers_agree_and_files_stay() {
     );
 }
 
+/// In the SI the table names the unit of v0, from which `fit` and `--table` convert, and the columns
+/// of the text stay apart.
+#[test]
+fn units_are_told_and_read_back() {
+    let text = "units = \"SI\"\n[experiment]\nv0 = [\"1 mm/s\", \"3 mm/s\", \"9 mm/s\", \"30 mm/s\"]\n\
+        average = 5.0\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.004\n\
+        [fixed]\nmass = 1.3\nstiffness = 1700.0\nnormal_load = 9.81\n";
+    let folder = Folder::with(&[("si.toml", text)]);
+    let told = folder.run(&["measure", "si.toml", "-o", "si.csv", "--digits", "9"]);
+    expect(&told, 0, "");
+    let rows: Vec<String> = out(&told).lines().map(str::to_owned).collect();
+    let cells = |row: &String| row.split_whitespace().count();
+    let settled = rows.iter().filter(|row| row.ends_with("  yes"));
+    assert_eq!(settled.map(cells).collect::<Vec<_>>(), [8; 4], "{rows:?}");
+    let titles = rows.iter().position(|row| row.contains("relaxation"));
+    let titles = titles.unwrap();
+    for row in &rows[titles + 1..titles + 5] {
+        assert_eq!(cells(row), 9, "{rows:?}");
+    }
+    assert!(rows[titles].contains(" alpha_n N m-1 "), "{rows:?}");
+    let csv = std::fs::read_to_string(folder.path().join("si.csv")).unwrap();
+    assert!(
+        csv.starts_with("v0 [m s-1],mu_k,mu_k_error,settled\n0.001,0.4"),
+        "{csv}"
+    );
+    // μ_K′ = −μ0/v_s/(1 + v0/v_s)² at 3 mm/s, in s/m, and in s/mm where that is the unit.
+    let expected = -0.5 / 0.004 / (1.75 * 1.75);
+    for (units, v0, times) in [("SI", "0.003", 1.0), ("N, mm, s", "3", 1e-3)] {
+        let line = [
+            "fit",
+            "si.csv",
+            "--units",
+            units,
+            "--v0",
+            v0,
+            "--law",
+            "weakening",
+        ];
+        let fitted = program::json(&folder.run(&[&line[..], &["--json"]].concat()));
+        let slope = fitted["mu_prime"].as_f64().unwrap() / times;
+        assert!((slope / expected - 1.0).abs() < 1e-5, "{units}: {fitted}");
+        let point = [
+            "point",
+            "--friction",
+            "table",
+            "--table",
+            "si.csv",
+            "--units",
+            units,
+        ];
+        let block = ["--mass", "1.3", "--tau", "0", "--v0", v0, "--json"];
+        let read = program::json(&folder.run(&[&point[..], &block].concat()));
+        let mu = read["mu_k"].as_f64().unwrap();
+        assert!((mu - 0.5 / 1.75).abs() < 1e-6, "{units}: {read}");
+    }
+}
+
+/// A file that cannot be written is told before the work begins, even before the experiment is read.
+#[test]
+fn a_missing_folder_is_told_first() {
+    let folder = Folder::new();
+    let told = folder.run(&["measure", "none.toml", "-o", "nodir/x.csv"]);
+    let error = err(&told);
+    assert!(
+        error.contains("nodir/x.csv") && !error.contains("none.toml"),
+        "{error}"
+    );
+}
+
+/// Without noise rounding is a bias of at most half a step, and no random error; with noise of a
+/// step it is random.
+#[test]
+fn rounding_without_noise_is_bounded() {
+    let readings = |noise: &str| format!("sample_time = 0.1\nresolution = 0.001\n{noise}");
+    let keys = "v0 = [0.1, 0.5, 0.9]\naverage = 60\nrepeats = 2";
+    let folder = Folder::with(&[
+        ("step.toml", &experiment(keys, &readings(""))),
+        ("both.toml", &experiment(keys, &readings("noise = 0.001"))),
+    ]);
+    let json = program::json(&folder.run(&["measure", "step.toml", "--json"]));
+    for point in json["points"].as_array().unwrap() {
+        let predicted = &point["predicted"];
+        assert_eq!(predicted["error"], 0.0, "{point}");
+        assert_eq!(predicted["bias_of_noise"], 0.0);
+        assert_eq!(predicted["rounding_bound"], 0.0005);
+        // All repeats are the same, and off by what is told.
+        assert_eq!(point["scatter"], 0.0);
+        assert!(point["off"].as_f64().unwrap().abs() <= 0.0005, "{point}");
+    }
+    let told = out(&folder.run(&["measure", "step.toml"]));
+    assert!(
+        told.contains("<= 0.0005") && told.contains("off by up to half a step, 0.0005,"),
+        "{told}"
+    );
+    let json = program::json(&folder.run(&["measure", "both.toml", "--json"]));
+    for point in json["points"].as_array().unwrap() {
+        let predicted = &point["predicted"];
+        assert_eq!(predicted["rounding_bound"], Value::Null);
+        assert!(predicted["error"].as_f64().unwrap() > 0.0, "{point}");
+    }
+    let told = out(&folder.run(&["measure", "both.toml"]));
+    assert!(
+        !told.contains("<=") && !told.contains("half a step"),
+        "{told}"
+    );
+}
+
+/// Settings that stand no spread are not called robust; each has its own.
+#[test]
+fn what_is_not_robust_is_not_called_so() {
+    let keys = "v0 = [0.09, 0.6]\ncontrol = \"velocity\"\naverage = 20\nwait = 20";
+    let folder = Folder::with(&[("edge.toml", &experiment(keys, ""))]);
+    let json = program::json(&folder.run(&["measure", "edge.toml", "--json"]));
+    let spreads: Vec<&Value> = json["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|point| &point["spread"])
+        .collect();
+    assert!(spreads[0].is_null() && spreads[1].is_f64(), "{spreads:?}");
+    let told = out(&folder.run(&["measure", "edge.toml"]));
+    assert!(
+        told.contains("each with its best setting, which is robust at 1 of 2\n"),
+        "{told}"
+    );
+    assert!(!told.contains("best robust setting"), "{told}");
+}
+
 /// What is wrong is underlined, with what to type.
 #[test]
 fn mistakes_are_told() {

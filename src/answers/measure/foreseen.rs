@@ -179,6 +179,7 @@ impl Experiment {
 const UNKNOWN: Predicted = Predicted {
     error: f64::NAN,
     rounding: f64::NAN,
+    rounding_bound: f64::NAN,
     bias_of_noise: f64::NAN,
     bias_of_drift: f64::NAN,
 };

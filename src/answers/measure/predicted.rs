@@ -26,17 +26,33 @@ const PANELS: u32 = 64;
 const MOST_TERMS: u32 = 10_000;
 
 /// What is expected of a mean, as of μ_K.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
     /// The standard error from noise, and from rounding where noise makes it random; 0 without
     /// readings, NaN where it is not known.
     pub error: f64,
     /// The standard error from rounding that noise does not make random; the same in every repeat.
     pub rounding: f64,
+    /// The most by which rounding biases every mean where there is no noise, half a step; NaN with
+    /// noise, or without rounding.
+    pub rounding_bound: f64,
     /// The bias of second order in noise and rounding.
     pub bias_of_noise: f64,
     /// The bias from the drift of v0.
     pub bias_of_drift: f64,
+}
+
+impl Default for Predicted {
+    /// Of readings that are exact.
+    fn default() -> Self {
+        Self {
+            error: 0.0,
+            rounding: 0.0,
+            rounding_bound: f64::NAN,
+            bias_of_noise: 0.0,
+            bias_of_drift: 0.0,
+        }
+    }
 }
 
 impl Predicted {
@@ -53,10 +69,13 @@ impl Predicted {
             };
         };
         let (noise, step) = (window.readings.noise, window.readings.resolution);
-        let variance = noise * noise + step * step / 12.0;
         let rounding = rounding_error(noise, step);
-        if variance == 0.0 {
+        // Of rounding, q²/12 in all, what noise does not make random is no noise.
+        let variance = noise * noise + (step * step / 12.0 - rounding * rounding).max(0.0);
+        if noise == 0.0 {
             return Self {
+                rounding,
+                rounding_bound: if step > 0.0 { 0.5 * step } else { f64::NAN },
                 bias_of_drift,
                 ..Self::default()
             };
@@ -80,6 +99,7 @@ impl Predicted {
             rounding,
             bias_of_noise,
             bias_of_drift,
+            ..Self::default()
         }
     }
 
@@ -171,17 +191,26 @@ mod tests {
         // The mean of readings of a at noise σ, by the whole sum, over all a.
         let (noise, step) = (0.4, 1.0);
         let normal = |x: f64| (-0.5 * x * x / (noise * noise)).exp();
-        let (mut square, many) = (0.0, 200);
+        let (mut square, mut random, many) = (0.0, 0.0, 200);
         for place in 0..many {
             let a = f64::from(place) / f64::from(many);
-            let (mut mean, mut weight) = (0.0, 0.0);
+            let (mut mean, mut of_squares, mut weight) = (0.0, 0.0, 0.0);
             for i in -4000..=4000 {
                 let n = f64::from(i) * 0.001;
-                mean += normal(n) * (a + n).round();
+                let read = (a + n).round();
+                mean += normal(n) * read;
+                of_squares += normal(n) * read * read;
                 weight += normal(n);
             }
-            square += (mean / weight - a) * (mean / weight - a) / f64::from(many);
+            mean /= weight;
+            square += (mean - a) * (mean - a) / f64::from(many);
+            random += (of_squares / weight - mean * mean) / f64::from(many);
         }
+        // What is random of a reading is the rest of the whole, over all a.
+        let whole = noise * noise + step * step / 12.0;
+        let rounding = rounding_error(noise, step);
+        let rest = whole - rounding * rounding;
+        assert!((random / rest - 1.0).abs() < 1e-3, "{random} {rest}");
         let found = rounding_error(noise, step);
         let mean = square.sqrt();
         assert!((mean / found - 1.0).abs() < 1e-3, "{mean} {found}");
