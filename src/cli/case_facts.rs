@@ -154,6 +154,21 @@ impl CaseFacts {
         self.until
     }
 
+    /// Control by the return map, by the keys that tell it; nothing under delayed feedback.
+    pub(super) fn return_map_inputs(&self) -> Vec<(&'static str, String)> {
+        let Some(map) = &self.return_map else {
+            return Vec::new();
+        };
+        let record = map.record.map(|record| ("record", record.to_string()));
+        let pulse = map.pulse.map(|of| ("pulse", self.with_unit("force", of)));
+        let told = [
+            ("control", self.control.to_owned()),
+            ("amplitude", self.with_unit("force", map.amplitude)),
+            ("model", map.model.to_owned()),
+        ];
+        told.into_iter().chain(record).chain(pulse).collect()
+    }
+
     /// A value with the unit of the quantity `name`.
     pub(super) fn with_unit(&self, name: &str, value: f64) -> String {
         let value = Shown(value);

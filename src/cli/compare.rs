@@ -10,7 +10,7 @@ use crate::explore::comparison::{At, Comparison, Over, Question};
 use crate::explore::route::Route;
 use crate::letter::{GENERATOR_OF_COMPARE, Sheet};
 use crate::model::stop::Stop;
-use crate::model::{MapModel, Record};
+use crate::model::{Control, MapModel, Record};
 use crate::report::progress::Progress;
 use crate::setting::amount::Amount;
 use crate::setting::basin::Basin;
@@ -18,7 +18,7 @@ use crate::setting::feedback_table::MODELS;
 use crate::setting::parameter::LARGEST;
 use crate::setting::{CaseSpec, Parameter};
 use crate::slip::case::CaseError;
-use crate::store::{Output, StoreError};
+use crate::store::Output;
 use crate::sweep::engine::RunError;
 use crate::sweep::events::Attended;
 use crate::text::Shown;
@@ -92,7 +92,7 @@ pub(super) struct Args {
     /// Where the return map comes from
     #[arg(long, value_name = "MODEL", value_parser = MODELS, default_value = MODELS[0])]
     model: String,
-    /// The length of a record in readings, from 7 to 100000 [default: 20]
+    /// The most readings of a record, from 7 to 100000 [default: 20]
     #[arg(long, value_name = "N", value_parser = parse_record)]
     record: Option<u32>,
     /// How many starts of each kind, a power of two from 64 to 1048576
@@ -251,6 +251,19 @@ impl Args {
                 "give alpha_n and tau in [fixed], and no [feedback]",
             ));
         }
+        let Control { alpha_v, alpha_n } = case.feedback.gains;
+        if alpha_n == 0.0 {
+            let message = format!(
+                "alpha_v = {}: velocity control does not change the load, whose largest change \
+                 both methods are to have in common",
+                Shown(alpha_v)
+            );
+            let error = spec.error_at(Parameter::AlphaV, message).help(
+                "compare load control: give alpha_n in the place of alpha_v, for example \
+                 alpha_n = -10.0",
+            );
+            return Err(Failure::in_file(error, &name.to_string(), &spec.text));
+        }
         if self.over == OverName::Route && case.programme.0.is_empty() {
             return Err(Failure::bad_input_with_help(
                 format!("{name}: v0 has no programme to follow"),
@@ -407,14 +420,7 @@ impl Args {
                 head: &told.head,
                 rows: &told.rows,
             };
-            let path = output.path().to_owned();
-            let written = std::fs::write(output.part(), sheet.page());
-            written.map_err(|source| StoreError::Io {
-                action: "write",
-                path,
-                source,
-            })?;
-            output.commit()?;
+            output.fill(sheet.page())?;
         }
         if self.json {
             let inputs = Inputs::default().and("case", CaseFacts::of(spec));

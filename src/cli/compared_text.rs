@@ -87,12 +87,14 @@ pub(super) fn of_shares(found: &Comparison, spec: &CaseSpec) -> Told {
             names.into_iter().chain(shares).collect()
         })
     });
-    let (over, fixed) = (found.over, fixed(found, spec));
+    let fixed = fixed([found.amplitude, found.slope, found.noise], spec);
+    let over = found.over;
+    let told = [
+        format!("shares of starts that reach sliding, in %, over {over}{fixed}"),
+        format!("{}; model {}", followed(found, spec), found.model),
+    ];
     Told {
-        text: vec![
-            format!("shares of starts that reach sliding, in %, over {over}{fixed}"),
-            format!("{}; model {}", followed(found, spec), found.model),
-        ],
+        text: told.into_iter().chain(not_counted(found)).collect(),
         svg: None,
         head,
         rows: rows.collect(),
@@ -105,26 +107,48 @@ fn unit(spec: &CaseSpec, parameter: Parameter) -> String {
 }
 
 /// What does not vary, in words; a slope that is right and readings without noise are not told.
-fn fixed(found: &Comparison, spec: &CaseSpec) -> String {
+fn fixed([amplitude, slope, noise]: [Option<f64>; 3], spec: &CaseSpec) -> String {
     let acts = |value: &f64| *value != 0.0;
     let fixed = [
-        (
-            "amplitude",
-            found.amplitude,
-            unit(spec, Parameter::NormalLoad),
-        ),
-        ("slope", found.slope.filter(acts), String::new()),
-        (
-            "noise",
-            found.noise.filter(acts),
-            unit(spec, Parameter::Noise),
-        ),
+        ("amplitude", amplitude, unit(spec, Parameter::NormalLoad)),
+        ("slope", slope.filter(acts), String::new()),
+        ("noise", noise.filter(acts), unit(spec, Parameter::Noise)),
     ];
     let told = fixed.into_iter().filter_map(|(name, value, unit)| {
         let value = Shown(value?);
         Some(format!(", {name} = {value}{unit}"))
     });
     told.collect()
+}
+
+/// Why starts are counted as not reaching sliding, and how many of a share are.
+type NotCounted = (&'static str, fn(&ReachedShare) -> u32);
+
+/// How many starts of all methods lift off or are undecided, where there are any.
+fn not_counted(found: &Comparison) -> Option<String> {
+    let kinds: [NotCounted; 2] = [
+        ("lift off, where the load is 0", |of| of.lift_off),
+        ("take too many steps to be known", |of| of.undecided),
+    ];
+    let told = kinds.iter().filter_map(|(what, count)| {
+        // Delayed feedback has one share for all slopes.
+        let places = |of: &Compared| match (found.over, of.method) {
+            ("slope", "delayed-feedback") => 1,
+            _ => usize::MAX,
+        };
+        let shares = found.methods.iter().flat_map(|of| {
+            let [near, stick_slip] = [&of.near, &of.stick_slip];
+            let kinds = [near, stick_slip].map(|shares| shares.iter().take(places(of)));
+            kinds.into_iter().flatten()
+        });
+        let starts: u64 = shares.map(|of| u64::from(count(of))).sum();
+        (starts > 0).then(|| format!("{} {what}", grouped(starts)))
+    });
+    let told: Vec<String> = told.collect();
+    (!told.is_empty()).then(|| {
+        let told = told.join(", and ");
+        format!("of all starts {told}: they are counted as not reaching sliding")
+    })
 }
 
 /// A share in percent with its error.
@@ -162,7 +186,11 @@ pub(super) fn of_route(found: &Route, spec: &CaseSpec) -> Told {
                 "sliding is held while v0 falls from {from} to {to}{of_v0} by t = {}{of_time}",
                 Shown(found.until)
             ),
-            format!("model {}", found.model),
+            format!(
+                "model {}{}",
+                found.model,
+                fixed([None, Some(found.slope), Some(found.noise)], spec)
+            ),
         ],
         svg: None,
         head: ["method", "amplitude", "held"].map(String::from).to_vec(),
@@ -201,4 +229,57 @@ pub(super) fn svg(found: &Comparison, spec: &CaseSpec) -> Result<String, Failure
     // The declaration of a file is none of a page's.
     let begin = text.find("<svg").unwrap_or(0);
     Ok(text[begin..].to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Starts that are not counted are told by their numbers, those of all slopes once.
+    #[test]
+    fn what_is_not_counted_is_told() {
+        let shares = |lift_off, undecided| {
+            let share = ReachedShare {
+                value: 0.1,
+                share: 0.5,
+                error: 0.1,
+                lift_off,
+                undecided,
+            };
+            vec![share; 2]
+        };
+        let of = |method, near, stick_slip| Compared {
+            method,
+            sample_time: None,
+            near,
+            stick_slip,
+        };
+        let mut found = Comparison {
+            over: "slope",
+            amplitude: Some(0.5),
+            slope: None,
+            noise: Some(0.0),
+            model: "exact",
+            starts: 64,
+            seed: 0,
+            horizon: 200.0,
+            period: None,
+            methods: vec![
+                of("delayed-feedback", shares(1, 0), shares(2, 0)),
+                of("return-map", shares(0, 0), shares(0, 5)),
+            ],
+        };
+        let told = |found: &Comparison| not_counted(found).unwrap_or_default();
+        assert_eq!(
+            told(&found),
+            "of all starts 3 lift off, where the load is 0, and 10 take too many steps to be \
+             known: they are counted as not reaching sliding"
+        );
+        found.over = "noise";
+        assert!(told(&found).contains("6 lift off"));
+        let spec: CaseSpec = include_str!("../../sweeps/fig3b.toml").parse().unwrap();
+        assert_eq!(of_shares(&found, &spec).text[2], told(&found));
+        found.methods.clear();
+        assert_eq!(told(&found), "");
+    }
 }

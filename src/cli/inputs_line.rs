@@ -19,6 +19,17 @@ pub(super) fn print(
     units: &Units,
     left_out: &[Parameter],
 ) -> std::io::Result<()> {
+    print_with(out, setting, units, left_out, &[])
+}
+
+/// The same with inputs `more` that are no parameters, by name.
+pub(super) fn print_with(
+    out: &mut impl Write,
+    setting: &Setting,
+    units: &Units,
+    left_out: &[Parameter],
+    more: &[(&str, String)],
+) -> std::io::Result<()> {
     if setting.system().is_some() {
         return Ok(());
     }
@@ -38,6 +49,7 @@ pub(super) fn print(
         .chain(law)
         .chain(formula)
         .chain(own)
+        .chain(more.iter().map(|(name, value)| (*name, value.clone())))
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
     let sliding = !left_out.contains(&Parameter::V0);

@@ -10,6 +10,7 @@ use crate::slip::motion::MOST_KEPT;
 use crate::slip::outcome::{Outcome, Summary};
 use crate::text::Shown;
 
+use super::case_facts::CaseFacts;
 use super::digits::Digits;
 use super::inputs_line;
 use super::output::tell_dimensionless;
@@ -26,7 +27,8 @@ pub(super) fn print(
 ) -> std::io::Result<()> {
     let (summary, units) = (&trace.summary, &spec.units);
     writeln!(out, "{}", verdict(summary, spec, digits))?;
-    inputs_line::print(out, &spec.setting, units, &[])?;
+    let control = CaseFacts::of(spec).return_map_inputs();
+    inputs_line::print_with(out, &spec.setting, units, &[], &control)?;
     for (name, value) in numbers(summary, units, digits) {
         writeln!(out, "  {name:<16} {value}")?;
     }

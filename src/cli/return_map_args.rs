@@ -24,7 +24,7 @@ pub(super) struct ReturnMapArgs {
     /// Where the return map comes from: the friction law, or a record near sliding
     #[arg(long, value_name = "MODEL", value_parser = MODELS)]
     model: Option<String>,
-    /// The length of the record in readings, at least 7 [default: 20]
+    /// The most readings of the record, at least 7 [default: 20]
     #[arg(long, value_name = "N")]
     record: Option<u64>,
     /// The largest pulse of the load in the record [default: 0.01 of N0]

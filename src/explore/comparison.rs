@@ -94,6 +94,11 @@ pub struct ReachedShare {
     /// Its standard error; null where the share is.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub error: f64,
+    /// How many starts lift off, the load being 0 there; they are counted as not reaching sliding.
+    pub lift_off: u32,
+    /// Of how many starts it is not known, since they take too many steps; they are counted as not
+    /// reaching sliding.
+    pub undecided: u32,
 }
 
 /// The shares of one method.
@@ -335,7 +340,11 @@ impl Question {
     ) -> Vec<ReachedShare> {
         let found: Vec<_> = tallies
             .take(self.places(method).len())
-            .map(|tally| tally.share(&[Outcome::Sliding]))
+            .map(|tally| {
+                let of = |outcome| tally.starts(outcome);
+                let unreached = [Outcome::LiftOff, Outcome::Undecided].map(of);
+                (tally.share(&[Outcome::Sliding]), unreached)
+            })
             .collect();
         let values = self.at.iter().map(|at| match self.over {
             Over::Amplitude => at.amplitude,
@@ -346,8 +355,10 @@ impl Question {
             let of = found.get(place).or(found.first());
             ReachedShare {
                 value,
-                share: of.map_or(f64::NAN, |of| of.share),
-                error: of.map_or(f64::NAN, |of| of.error),
+                share: of.map_or(f64::NAN, |(of, _)| of.share),
+                error: of.map_or(f64::NAN, |(of, _)| of.error),
+                lift_off: of.map_or(0, |(_, [lift_off, _])| *lift_off),
+                undecided: of.map_or(0, |(_, [_, undecided])| *undecided),
             }
         };
         values.enumerate().map(share).collect()

@@ -40,6 +40,10 @@ pub struct Route {
     /// Where the return map comes from: `exact`, at the v0 of each reading, or `reconstructed`, at
     /// the first one.
     pub model: &'static str,
+    /// By which share the model's slope of friction is wrong.
+    pub slope: f64,
+    /// The noise of readings.
+    pub noise: f64,
     /// The methods, none first.
     pub methods: Vec<Held>,
 }
@@ -76,6 +80,8 @@ impl Question {
             v0: [self.case.v0, end],
             until,
             model: self.model_name(),
+            slope: self.at.first().map_or(0.0, |at| at.slope),
+            noise: self.at.first().map_or(0.0, |at| at.noise),
             methods,
         }))
     }

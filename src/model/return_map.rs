@@ -24,7 +24,8 @@ pub struct Recursion {
 /// A record near sliding under small known pulses of the load, to which (1) is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record {
-    /// Its length in readings, at least [`Record::LEAST`]. It ends earlier where the block stops.
+    /// Its largest length in readings, at least [`Record::LEAST`]. It ends earlier where the block
+    /// stops, or leaves the vicinity in which (1) holds.
     pub readings: u32,
     /// The largest pulse, above 0 and below N0, in the unit of N0.
     pub pulse: f64,
@@ -35,7 +36,7 @@ impl Record {
     pub const LEAST: u32 = 7;
     /// The most readings.
     pub const MOST: u32 = 100_000;
-    /// Readings of a record that nothing else is said of.
+    /// The most readings of a record that nothing else is said of.
     pub const READINGS: u32 = 20;
     /// The largest pulse by default, in units of N0.
     pub const PULSE: f64 = 0.01;

@@ -23,7 +23,7 @@
 //! control = "return-map"          # with sample_time in [fixed]
 //! amplitude = 0.5                 # the largest change of the load
 //! model = "reconstructed"         # or "exact", by default: from the friction law
-//! record = 20                     # readings of the record from which it is reconstructed
+//! record = 20                     # the most readings from which it is reconstructed
 //! pulse = 0.01                    # the largest pulse of the load in it
 //!
 //! [start]                         # optional: at t = 0, and the elongation before
@@ -176,6 +176,19 @@ impl CaseSpec {
         let mut setting = self.setting.clone();
         setting.set(Parameter::V0, self.case.last_v0());
         setting
+    }
+
+    /// An error at the place of a parameter in the text.
+    pub(crate) fn error_at(&self, parameter: Parameter, message: impl Into<String>) -> SpecError {
+        let place = || {
+            let parsed = parse(&self.text).ok()?;
+            let mut document = Document::of(entries(parsed.get_ref(), ""), names(&CASE));
+            let given = GivenParameters::of(&mut document, &self.text, moves);
+            given.place(parameter).cloned()
+        };
+        let mut error = SpecError::whole(message);
+        error.span = place();
+        error
     }
 
     /// The error of a trace that would be too long, at the key of the text that makes it so.

@@ -113,7 +113,7 @@ fn read_model(entry: &Entry) -> Result<bool, SpecError> {
     }
 }
 
-/// The length of a record in readings.
+/// The most readings of a record.
 pub(super) fn read_record(entry: &Entry) -> Result<u32, SpecError> {
     let (least, most) = (u64::from(Record::LEAST), u64::from(Record::MOST));
     match entry.whole()? {

@@ -397,7 +397,7 @@ pub(crate) const FEEDBACK: [Key; 5] = [
         "record",
         "a whole number from 7 to 100 000",
         "20",
-        "the length of the record in readings; it ends at the first stop",
+        "the most readings of the record; it ends where the block leaves the vicinity of sliding",
     ),
     key(
         "pulse",

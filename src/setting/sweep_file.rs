@@ -53,6 +53,12 @@ impl SweepSpec {
             "it is a key of a case file, of one motion: `slipmap simulate` takes it; in a sweep, \
              [simulation] has the horizon and the steps",
         );
+        document.refuse(
+            &["feedback"],
+            "it is a table of a case file: a map has delayed feedback, by the gains in [fixed] or \
+             [axes]; control by the return map is for one motion, `slipmap simulate CASE.toml`, \
+             and `slipmap compare CASE.toml` varies it",
+        );
         let most = most_points.min(MOST_POINTS);
         let units = units_of(&mut document);
         let (system, given, axes) = read_parameters(&mut document, text, system, &units, most);

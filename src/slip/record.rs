@@ -1,8 +1,9 @@
 //! The recursion of readings, reconstructed from a record near sliding.
 //!
 //! The block begins in sliding and is disturbed by small known pulses of the load, drawn with the
-//! seed of its readings: without them nothing would tell what a load does. The record ends where
-//! the block first stops. Its readings are fitted by least squares to
+//! seed of its readings: without them nothing would tell what a load does. Where sliding is not
+//! stable the block soon leaves the vicinity in which it is linear, and the record ends there, or
+//! at the first stop. Its readings are fitted by least squares to
 //!
 //! ```text
 //! a_{k+1} = t₁ a_k + t₂ a_{k−1} + g₁ δN_k + g₂ δN_{k−1} + const
@@ -13,6 +14,11 @@ use super::return_map::Steering;
 use crate::model::least_squares::LeastSquares;
 use crate::model::{Record, Recursion};
 
+/// The vicinity: a reading is within this share of v0 √(M/κ) of the first one, that of sliding. The
+/// block stops where it swings by v0 √(M/κ).
+const VICINITY: f64 = 0.2;
+/// So many readings are kept beyond it: with fewer a little noise is much.
+const KEPT: usize = 9;
 /// What is left of 1 − t₁ − t₂ has to be more than this for a* to be told.
 const LEAST_LEFT: f64 = 1e-6;
 /// What is drawn for a record is drawn for no motion.
@@ -55,7 +61,7 @@ pub(super) fn reconstructed(
         .ok_or(NoRecursion::Singular)
 }
 
-/// The readings of a record, to the first stop.
+/// The readings of a record, to where it leaves the vicinity, or stops.
 fn read(p: &Parameters, accuracy: Accuracy, record: Record) -> Vec<Read> {
     let mut p = p.clone();
     p.switch_on = 0.0;
@@ -69,6 +75,11 @@ fn read(p: &Parameters, accuracy: Accuracy, record: Record) -> Vec<Read> {
         let event = motion.advance(2.0 * horizon);
         if motion.reads() != last {
             read.extend(motion.last_reading());
+            let far = |[y, _]: &Read| (y - read[0][0]).abs() > VICINITY * v0;
+            if read.len() > KEPT && read.last().is_some_and(far) {
+                read.pop();
+                break;
+            }
         }
         let ends = [Event::Stick, Event::Reversal, Event::LiftOff];
         if event.is_some_and(|event| ends.contains(&event)) {
@@ -160,6 +171,41 @@ mod tests {
                 off(&found, &expected) < 1e-7,
                 "{readings}: {found:?} {expected:?}"
             );
+        }
+    }
+
+    /// Of friction that weakens a record of any length ends where it is no longer linear, so
+    /// its map is right to some digits.
+    #[test]
+    fn a_record_ends_in_the_vicinity() {
+        let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        for (sample_time, v0) in [(0.9, 0.1), (0.5, 0.1)] {
+            let made = |readings: u32, seed: u64| {
+                let record = Record {
+                    readings,
+                    pulse: 0.01,
+                };
+                let mut p = parameters(law.clone(), record, 0.0);
+                p.dashpots = Dashpots::default();
+                p.v0 = v0;
+                p.feedback.readings.sample_time = sample_time;
+                p.feedback.readings.seed = seed;
+                let read = read(&p, Accuracy::default(), record);
+                let expected = of_law(&p, v0, 1.0);
+                (read.clone(), off(&fitted(&read).unwrap(), &expected))
+            };
+            for seed in 0..20 {
+                let ((short, error), (long, same)) = (made(20, seed), made(1000, seed));
+                assert!(error < 0.1, "{sample_time} {v0} {seed}: {error}");
+                let all = long.iter().enumerate();
+                for (place, [y, _]) in all.filter(|(place, _)| *place >= KEPT) {
+                    assert!((y - long[0][0]).abs() <= VICINITY * v0, "{place}");
+                }
+                assert!(long.len() < 40 && long.starts_with(&short));
+                if short.len() < 20 {
+                    assert_eq!((short.len(), error), (long.len(), same));
+                }
+            }
         }
     }
 

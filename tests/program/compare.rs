@@ -10,7 +10,9 @@ fn folder() -> Folder {
     let idle = FIG3B
         .replace("alpha_n = -10.0\n", "")
         .replace("tau = 0.5\n", "");
+    let velocity = FIG3B.replace("alpha_n = -10.0\n", "alpha_v = -0.33\n");
     Folder::with(&[
+        ("velocity.toml", &velocity),
         ("fig3b.toml", FIG3B),
         ("route.toml", ROUTE),
         ("idle.toml", &idle),
@@ -61,6 +63,8 @@ fn bytes_do_not_depend_on_threads() {
     // With half of the load delayed feedback reaches sliding from everywhere.
     for kind in ["near", "stick_slip"] {
         let share = delayed[kind][1]["share"].as_f64().unwrap();
+        assert_eq!(delayed[kind][1]["lift_off"], 0);
+        assert_eq!(delayed[kind][1]["undecided"], 0);
         assert!(share > 0.95, "{delayed}");
     }
     let other = run(
@@ -90,6 +94,22 @@ fn slopes_and_noise_are_varied() {
     assert!(of(1) < of(0), "{told}");
 }
 
+/// A map from the record by default is nearly as good as the exact one: the record ends before it
+/// is no longer linear, and a longer one is allowed.
+#[test]
+fn a_reconstructed_map_is_nearly_as_good() {
+    let folder = folder();
+    for record in ["", "--record 200"] {
+        let line = format!(
+            "compare fig3b.toml --over amplitude --amplitude 0.5 --sample-time 0.9 --starts 64 \
+             --horizon 100 --model reconstructed {record} --json"
+        );
+        let told = program::json(&run(&folder, &line));
+        let share = told["methods"][1]["near"][0]["share"].as_f64().unwrap();
+        assert!(share > 0.8, "{told}");
+    }
+}
+
 /// Without control sliding is lost where it becomes unstable, under control lower.
 #[test]
 fn a_route_says_where_sliding_is_lost() {
@@ -104,12 +124,31 @@ fn a_route_says_where_sliding_is_lost() {
     }
 }
 
+/// The route tells the error of the slope and the noise that it was asked with.
+#[test]
+fn a_route_tells_what_does_not_vary() {
+    let folder = folder();
+    let route = "compare route.toml --over route --amplitude 0.5 --sample-time 0.9 --slope 0.2 \
+        --noise 0.001";
+    let told = out(&run(&folder, &format!("{route} -o route.html")));
+    let line = "model exact, slope = 0.2, noise = 0.001";
+    assert!(told.contains(line), "{told}");
+    let page = std::fs::read_to_string(folder.path().join("route.html")).unwrap();
+    assert!(page.contains(line));
+    let json = program::json(&run(&folder, &format!("{route} --json")));
+    assert_eq!(
+        (&json["slope"], &json["noise"]),
+        (&0.2.into(), &0.001.into())
+    );
+}
+
 #[test]
 fn mistakes_are_answered() {
     let folder = folder();
     let mut told = String::new();
     for line in [
         "compare idle.toml --over amplitude",
+        "compare velocity.toml --over amplitude",
         "compare fig3b.toml --over route",
         "compare fig3b.toml --over amplitude --amplitude 0.5,1.5",
         "compare fig3b.toml --over slope --amplitude 0.1,0.5",
@@ -119,6 +158,7 @@ fn mistakes_are_answered() {
         "compare fig3b.toml --over amplitude --starts 65",
         "compare fig3b.toml --over amplitude --model reconstructed --record 6",
         "compare fig3b.toml --over amplitude -o page.txt",
+        "compare fig3b.toml --over amplitude -o nodir/page.html",
         "compare fig3b.toml",
     ] {
         let output = run(&folder, line);

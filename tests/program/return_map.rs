@@ -60,6 +60,29 @@ fn a_reconstructed_model_has_a_record() {
         (&told["record"], &told["pulse"]),
         (&12.into(), &0.005.into())
     );
+    let text = out(&folder.run(&["simulate", "case.toml", "--fresh"]));
+    let inputs = text.lines().find(|line| line.starts_with("inputs: "));
+    let control = "control = return-map, amplitude = 0.5, model = reconstructed, record = 12, \
+        pulse = 0.005;";
+    assert!(inputs.is_some_and(|line| line.contains(control)), "{text}");
+}
+
+/// A map has no control by the return map: the message says what has.
+#[test]
+fn a_sweep_file_refuses_the_table() {
+    let sweep = "[axes]\ntau = [0.5, 1.0]\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n\
+        [fixed]\nv0 = 0.1\nalpha_n = -10\n[feedback]\ncontrol = \"return-map\"\n\
+        amplitude = 0.5\n";
+    let folder = Folder::with(&[("sweep.toml", sweep)]);
+    for command in ["run", "plan"] {
+        let output = folder.run(&[command, "sweep.toml"]);
+        expect(&output, 2, "`feedback` does not belong here");
+        let told = err(&output);
+        assert!(
+            told.contains("slipmap compare") && told.contains("[feedback]"),
+            "{told}"
+        );
+    }
 }
 
 #[test]
