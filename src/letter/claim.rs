@@ -127,6 +127,9 @@ impl ClaimValue {
             None => 8.0,
         };
         let number = significant(value, digits as usize);
+        if self.error.is_none() && number.contains('.') && !number.contains('e') {
+            return number.trim_end_matches('0').to_owned();
+        }
         match self.error.filter(|error| *error > 0.0) {
             Some(error) => format!("{number} ± {}", significant(error, 1)),
             None => number,
@@ -243,5 +246,6 @@ mod tests {
         assert_eq!(shown(0.0, 0.0), "0");
         assert_eq!(ClaimValue::of("", "", f64::INFINITY).shown(), "none");
         assert_eq!(ClaimValue::of("", "", 1e-9).shown(), "1.0000000e-9");
+        assert_eq!(ClaimValue::of("", "", 0.01).shown(), "0.01");
     }
 }

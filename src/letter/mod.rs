@@ -11,8 +11,12 @@
 //! - `damping`: velocity control of a damped spring
 //! - `roots`: characteristic roots: their number, bounds and decay
 //! - `motions`: the motions of its Fig. 3, the fate of stick-slip, basins
+//! - `forces`: the forces of control while the block comes to slide
 //! - `robustness`, `measures`: critical velocities at finite delays; comparison of both controls
 //! - `short_delay`: Coulomb friction in the limit of a vanishing delay, its Fig. 4
+//! - `return_map`, `routes`, `drift`: control by the return map beside delayed feedback: its
+//!   vicinity; the slow approach; maps that were reconstructed once
+//! - `measuring`: friction measured through control
 //!
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
 //! them: equal numbers give equal verdicts.
@@ -26,19 +30,25 @@
 
 mod claim;
 mod damping;
+mod drift;
+mod forces;
 mod kept_picture;
 mod limits;
 mod measures;
+mod measuring;
 mod motions;
 mod one_variable;
 mod page;
+mod return_map;
 mod robustness;
 mod roots;
+mod routes;
 mod short_delay;
 mod shortest;
 mod stability;
 mod workshop;
 
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -47,6 +57,7 @@ use utoipa::ToSchema;
 use crate::answers::trace::TraceError;
 use crate::model::ModelError;
 use crate::report::picture::PictureError;
+use crate::slip::case::CaseError;
 use crate::store::StoreError;
 use crate::sweep::RunError;
 use crate::text::SpecError;
@@ -86,6 +97,9 @@ pub(crate) enum LetterError {
     /// A map could not be computed.
     #[error(transparent)]
     Run(RunError<StoreError>),
+    /// A question about motions could not be answered.
+    #[error(transparent)]
+    Unanswered(RunError<Infallible>),
     /// A motion could not be followed.
     #[error(transparent)]
     Trace(TraceError),
@@ -103,6 +117,10 @@ pub(crate) enum LetterError {
 impl LetterError {
     fn spec(name: &'static str) -> impl Fn(SpecError) -> Self {
         move |error| Self::Spec { name, error }
+    }
+
+    fn case(error: CaseError) -> Self {
+        Self::Trace(error.into())
     }
 
     fn io(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Self {
@@ -123,6 +141,15 @@ impl From<RunError<StoreError>> for LetterError {
         match error {
             RunError::Interrupted => Self::Stopped,
             other => Self::Run(other),
+        }
+    }
+}
+
+impl From<RunError<Infallible>> for LetterError {
+    fn from(error: RunError<Infallible>) -> Self {
+        match error {
+            RunError::Interrupted => Self::Stopped,
+            other => Self::Unanswered(other),
         }
     }
 }
@@ -156,6 +183,8 @@ pub(crate) fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterEr
     claims.extend(motions::claims(shop)?);
     claims.extend(robustness::claims(shop)?);
     claims.extend(short_delay::claims(shop)?);
+    claims.extend(of_return_maps(shop)?);
+    claims.extend(measuring::claims(shop)?);
     shop.step("the page")?;
     let made = workshop.made;
     for claim in &mut claims {
@@ -165,6 +194,17 @@ pub(crate) fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterEr
     }
     let figures = made.into_values().collect();
     Ok(Reproduction { claims, figures })
+}
+
+/// The claims on control by the return map.
+fn of_return_maps(shop: &Workshop) -> Result<[Claim; 3], LetterError> {
+    shop.step("control by the return map")?;
+    let vicinity = return_map::Vicinity::found(shop)?;
+    shop.step("the slow approach")?;
+    let slowly = routes::Slowly::found(shop, &vicinity)?;
+    shop.step("maps that drift")?;
+    let drift = drift::Drift::found(shop)?;
+    Ok([vicinity.claim(), slowly.claim(), drift.claim()])
 }
 
 impl Reproduction {

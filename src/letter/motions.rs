@@ -2,6 +2,7 @@
 
 use super::LetterError;
 use super::claim::{Claim, ClaimValue, Verdict};
+use super::forces::Decay;
 use super::workshop::{Source, Workshop, column, source};
 use crate::answers::Trace;
 use crate::linear::rightmost::Rightmost;
@@ -337,6 +338,9 @@ impl Basins {
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     let [a, b] = [shop.motion(&FIG3A)?, shop.motion(&FIG3B)?];
     let panels = [Motion::of(&a.0, &a.1)?, Motion::of(&b.0, &b.1)?];
+    let (spec, trace) = &b;
+    let load = spec.case.oscillator.normal_load();
+    let forces = Decay::along(trace, load, (panels[1].abscissa, panels[1].margin));
     let basins = Basins {
         velocity: Outcomes::of(&shop.map(&BASIN_A)?)?,
         load: Outcomes::of(&shop.map(&BASIN_B)?)?,
@@ -354,6 +358,7 @@ pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
         panels[0].claim("fig3a", "Fig. 3(a)"),
         panels[1].claim("fig3b", "Fig. 3(b)"),
         stability(&panels),
+        forces.claim(),
         basins.claim(),
         not_destroyed.claim(),
     ])

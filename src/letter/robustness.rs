@@ -5,6 +5,7 @@ use super::LetterError;
 use super::claim::{Claim, ClaimValue, Verdict};
 use super::measures::{Measure, linear_measures};
 use super::workshop::{Source, Workshop, column, source};
+use crate::critical::switch_on::{Phase, Scan, Trials};
 use crate::critical::{Problem, critical_velocity};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::stop::Stop;
@@ -13,6 +14,7 @@ use crate::setting::Field;
 use crate::slip::cycle::after_release;
 use crate::slip::motion::Accuracy;
 use crate::store::MapFile;
+use crate::sweep::engine::each_attended;
 
 const SMOOTH: Source = source!(
     "velocity_smooth",
@@ -33,6 +35,8 @@ const LOAD: Source = source!(
 /// The sources of the claims here.
 pub(super) const SOURCES: [&Source; 3] = [&SMOOTH, &VELOCITY, &LOAD];
 
+/// The error of an edge of survival: as far as intervals are halved.
+const EDGE: f64 = 1e-6;
 /// The relative error of v_c, that of an end found from a neighbour's orbit.
 const VC_ERROR: f64 = 1e-4;
 
@@ -52,18 +56,85 @@ fn stick_over_slip(v0: f64) -> Result<f64, LetterError> {
     Ok(cycle.map_or(f64::NAN, |(_, cycle)| cycle.stick_time / cycle.slip_time))
 }
 
+/// The v0 at which stick-slip is tried that control meets at Fig. 3(a) when the block stops, and
+/// how many.
+const SWITCHED_ON: (f64, f64, u32) = (0.2, 0.36, 41);
+/// Halvings of the intervals between them in which its fate changes.
+const HALVINGS: u32 = 14;
+
+/// The v0 at which the fate of stick-slip changes that control meets at Fig. 3(a) when the block
+/// stops: lost first, then back, then lost, and so on.
+fn edges_switched_on(shop: &Workshop, problem: &Problem) -> Result<Vec<f64>, LetterError> {
+    let survives = |v0: f64| {
+        let free = problem.at(v0, f64::INFINITY);
+        let cycle = after_release(&free, Accuracy::default(), 0.0);
+        cycle.is_ok_and(|(_, cycle)| {
+            let steps = Scan::default().steps;
+            let stop = Phase::After(cycle.slip_time);
+            let mut trials = Trials::new(problem, stop, Accuracy::default(), steps);
+            trials.at(v0).persists()
+        })
+    };
+    let (from, to, number) = SWITCHED_ON;
+    let step = (to - from) / f64::from(number - 1);
+    let tried: Vec<f64> = (0..number).map(|i| from + step * f64::from(i)).collect();
+    let fates = each_attended(
+        &tried,
+        shop.threads,
+        shop.attended,
+        |_| 1,
+        |v0, stop| {
+            let survives = survives(*v0);
+            (!stop.is_set()).then_some(survives)
+        },
+    )?;
+    let pairs = tried.windows(2).zip(fates.windows(2));
+    let changes = pairs.filter(|(_, fates)| fates[0] != fates[1]);
+    let edge = |(v0, fates): (&[f64], &[bool])| {
+        let halved = (0..HALVINGS).fold([v0[0], v0[1]], |[below, above], _| {
+            let middle = 0.5 * (below + above);
+            match survives(middle) == fates[0] {
+                true => [middle, above],
+                false => [below, middle],
+            }
+        });
+        0.5 * (halved[0] + halved[1])
+    };
+    let edges = changes.map(edge).collect();
+    match shop.stop().is_set() {
+        true => Err(LetterError::Stopped),
+        false => Ok(edges),
+    }
+}
+
 /// v_c at the settings of Fig. 3, with the velocities used there.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct AtFig3 {
     vc: [f64; 2],
     v0: [f64; 2],
+    /// Where the fate of stick-slip changes that control meets when the block stops.
+    edges: Vec<f64>,
 }
 
 impl AtFig3 {
     fn verdict(&self) -> Verdict {
         let pairs = self.vc.iter().zip(&self.v0);
         let below = pairs.filter(|(vc, v0)| **vc > 0.0 && vc < v0).count();
-        Verdict::of_parts(below == 2, below == 1)
+        // Survival that comes back has no single velocity below which it is.
+        Verdict::of_parts(below == 2 && self.edges.len() == 1, below >= 1)
+    }
+
+    /// What becomes of stick-slip that control meets when the block stops.
+    fn told_edges(&self) -> String {
+        let [lost, back, last] = self.edges[..] else {
+            return String::new();
+        };
+        format!(
+            " Such stick-slip need not come about when control is switched on: at Fig. 3(a), when \
+             the block has just stopped, it survives up to {lost:.5}, is lost above, survives \
+             again from {back:.5} on and is lost for good at {last:.5}. Survival is re-entrant \
+             there, and no single v_c parts the velocities.",
+        )
     }
 
     fn claim(&self) -> Claim {
@@ -71,24 +142,42 @@ impl AtFig3 {
             "Stick-slip survives up to {:.6} at Fig. 3(a), where v0 = {}, and up to {:.6} at Fig. \
              3(b), where v0 = {}.",
             self.vc[0], self.v0[0], self.vc[1], self.v0[1],
-        );
+        ) + &self.told_edges();
         let at = (
             "paragraph below Eq. (8)",
             "survives if the applied velocity v0 is below some critical value v_c",
         );
         let how = "Stick-slip under control is followed from low v0 on to the largest one at which \
-            it is sustained: where its orbit grazes sliding.";
+            it is sustained: where its orbit grazes sliding. At Fig. 3(a) stick-slip without \
+            control is also tried at 41 v0 from 0.2 to 0.36, with control switched on when the \
+            block stops, and changes of its fate are refined; the last command does so at one time \
+            after a release, shortly before the stop.";
         let values = ["Fig. 3(a)", "Fig. 3(b)"].into_iter().zip(self.vc);
         let values = values.map(|(name, vc)| {
             let meaning = "critical velocity, √(N0²/(κM))";
             ClaimValue::of(format!("v_c at {name}"), meaning, vc).within(VC_ERROR * vc)
         });
+        let edges = self.edges.iter().enumerate().map(|(i, edge)| {
+            let meaning = match i % 2 {
+                0 => {
+                    "v0 above which stick-slip is lost where control is switched on as the block \
+                      stops, Fig. 3(a)"
+                }
+                _ => "v0 above which it survives again",
+            };
+            ClaimValue::of(format!("switched on, edge {}", i + 1), meaning, *edge).within(EDGE)
+        });
         Claim::new("critical_velocity", at, self.verdict(), because, how)
             .by(values)
+            .by(edges)
             .repeat(
                 "slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15",
             )
             .repeat("slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-n=-10 --tau 0.5")
+            .repeat(
+                "slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15 \
+                 --protocol switch-on --phase 3.85",
+            )
     }
 }
 
@@ -258,13 +347,13 @@ pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
         let found = critical_velocity(&problem);
         if found.decided { found.vc } else { f64::NAN }
     };
-    let vc = [
-        at(letters(-0.33, 0.0, 4.15, &stop)?),
-        at(letters(0.0, -10.0, 0.5, &stop)?),
-    ];
+    let at_fig3a = letters(-0.33, 0.0, 4.15, &stop)?;
+    let edges = edges_switched_on(shop, &at_fig3a)?;
+    let vc = [at(at_fig3a), at(letters(0.0, -10.0, 0.5, &stop)?)];
     let fig3 = AtFig3 {
         vc,
         v0: [0.35, 0.1],
+        edges,
     };
     let around = smooth(&shop.map(&SMOOTH)?)?;
     let (slowest, place) = lowest(&around);
@@ -311,9 +400,16 @@ mod tests {
     fn both_velocities_of_fig_3_have_to_lie_above() {
         let of = |vc: [f64; 2]| {
             let v0 = [0.35, 0.1];
-            AtFig3 { vc, v0 }.verdict()
+            let edges = vec![vc[0]];
+            AtFig3 { vc, v0, edges }.verdict()
         };
         assert_eq!(of([0.344, 0.02]), Verdict::Confirmed);
+        let re_entrant = AtFig3 {
+            vc: [0.344, 0.02],
+            v0: [0.35, 0.1],
+            edges: vec![0.27, 0.28, 0.344],
+        };
+        assert_eq!(re_entrant.verdict(), Verdict::Refined);
         assert_eq!(of([0.36, 0.02]), Verdict::Refined);
         assert_eq!(of([0.36, 0.2]), Verdict::Contradicted);
         assert_eq!(of([f64::NAN, 0.0]), Verdict::Contradicted);

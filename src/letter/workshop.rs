@@ -42,7 +42,7 @@ pub(super) struct Source {
 
 impl Source {
     /// The text after replacements.
-    fn text(&self, quick: bool) -> String {
+    pub(super) fn text(&self, quick: bool) -> String {
         let replaced = self.always.iter();
         let replaced = replaced.chain(self.quick.iter().filter(|_| quick));
         replaced.fold(self.text.to_owned(), |text, (from, to)| {

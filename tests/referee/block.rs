@@ -105,6 +105,8 @@ pub(crate) struct Block {
     /// S as it is held, where there are readings, and what has been held before.
     pub(super) held: f64,
     pub(super) signals: Vec<f64>,
+    /// The v0 for which the return map was made once; that of each reading where there is none.
+    pub(super) map_of: Option<f64>,
     /// How many corners of the programme are behind.
     behind: usize,
 }
@@ -159,6 +161,7 @@ impl Block {
             arriving: 0.0,
             held: 0.0,
             signals: Vec::new(),
+            map_of: None,
             behind: 0,
         };
         block.kink(1);

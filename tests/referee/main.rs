@@ -22,6 +22,7 @@ mod ramp;
 mod random;
 mod readings;
 mod return_map;
+mod routes;
 mod setting;
 mod shares;
 mod steps;

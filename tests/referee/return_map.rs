@@ -88,7 +88,8 @@ impl Block {
         if self.signals.is_empty() {
             self.signals.push(0.0);
         } else {
-            let known = Known::of(s, self.unperturbed(t).0);
+            let v0 = self.map_of.unwrap_or_else(|| self.unperturbed(t).0);
+            let known = Known::of(s, v0);
             let [before, now] = [t - s.sample_time, t].map(|t| self.past.at(t).0);
             wanted = known.load(before, now, self.held);
         }

@@ -20,7 +20,7 @@ const STARTS: [u32; 2] = [240, 48];
 const HORIZON: f64 = 80.0;
 
 /// The letter's Fig. 3(b) under the return map, or under delayed feedback with limits where `sample_time` is 0.
-fn under(sample_time: f64, amplitude: f64) -> Setting {
+pub(super) fn under(sample_time: f64, amplitude: f64) -> Setting {
     let delayed = Setting::fig3b();
     match sample_time > 0.0 {
         true => Setting {
