@@ -85,7 +85,7 @@ impl Subject {
     /// The parameter with this name, known or its own.
     pub(crate) fn quantity(&self, name: &str) -> Option<Quantity> {
         if let Some(model) = self.setting.system() {
-            return model.quantities().into_iter().find(|of| of.name() == name);
+            return model.quantity(name);
         }
         let own = self.setting.own().find(|(own, _)| own.name == name);
         match own {

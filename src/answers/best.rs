@@ -303,7 +303,7 @@ impl Scales {
             middle(search.gains),
             middle(search.delays),
         );
-        in_the_middle.answered()?;
+        in_the_middle.searched()?;
         search.family.width = search.gains.1 - search.gains.0;
         Ok(best::best(&search, stop))
     }

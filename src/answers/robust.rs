@@ -77,13 +77,14 @@ impl RobustSearch {
     }
 }
 
-/// The best settings within `ranges`, as from [`best_settings`], and the most robust one under
-/// relative errors of gain, delay and μ′ of up to `spread`, those of gain and delay less than 1.
-/// None for the latter where no setting stays stable. Once `stop` is set, the answer comes soon but
-/// is meaningless.
+/// The best settings within `ranges`, as from [`best_settings`](super::best::best_settings), and
+/// the most robust one under relative errors of gain, delay and μ′ of up to `spread`, those of gain
+/// and delay less than 1. None for the latter where no setting stays stable. Once `stop` is set,
+/// the answer comes soon but is meaningless.
 ///
 /// # Errors
-/// As [`best_settings`], and under friction with a state, of which the slope μ′ does not say all.
+/// As [`best_settings`](super::best::best_settings), and under friction with a state, of which the
+/// slope μ′ does not say all.
 pub fn robust_setting(
     setting: &Setting,
     gain: SearchedGain,

@@ -12,7 +12,7 @@ use crate::setting::units::Units;
 use crate::store::MapFile;
 use crate::sweep::Plan;
 use crate::text::nearest::did_you_mean;
-use crate::text::{Shown, SpecError};
+use crate::text::{Shown, SpecError, words};
 
 use super::failure::Failure;
 use super::parameter_values::{named_amount, quantity_in_units};
@@ -63,7 +63,8 @@ impl<'m> From<&'m Plan> for Axes<'m> {
 impl Axes<'_> {
     /// The number of an axis.
     fn named(&self, name: &str) -> Option<usize> {
-        self.all.iter().position(|(axis, _)| axis.name() == name)
+        let mut axes = self.all.iter();
+        axes.position(|(axis, _)| words::same(axis.name(), name))
     }
 
     /// For every axis, the place at which `at` holds it; none where it is free.

@@ -16,7 +16,7 @@ use crate::setting::system::SystemModel;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::nearest::did_you_mean;
-use crate::text::{Shown, SpecError};
+use crate::text::{Shown, SpecError, words};
 
 use super::asked::Asked;
 use super::asks::AtAnyDelay;
@@ -248,7 +248,7 @@ impl Args {
         let names: Vec<&str> = all.iter().map(Quantity::name).collect();
         let listed = names.join(", ");
         let found = match (&self.search, &*all) {
-            (Some(name), _) => all.iter().find(|of| of.name() == name),
+            (Some(name), _) => all.iter().find(|of| words::same(of.name(), name)),
             (None, [alone]) => Some(alone),
             (None, _) => None,
         };

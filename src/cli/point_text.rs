@@ -6,7 +6,8 @@ use crate::explore::margin_kind::MarginKind;
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::explore::stability::{Spectrum, Stability};
 use crate::report::numbers::unit_behind;
-use crate::setting::system::{SpeedAxis, Turn};
+use crate::report::visible::shortened;
+use crate::setting::system::{SpeedAxis, SystemModel, Turn};
 use crate::setting::units::Units;
 use crate::setting::{Field, Parameter};
 use crate::text::{Shown, finite};
@@ -69,6 +70,9 @@ fn verdict(stability: &Stability) -> &'static str {
         (_, true, _) => "marginal: within rounding of a stability boundary",
         (true, false, _) => "stable",
         (false, false, Some("degree-unknown")) => "not known to be stable or not",
+        (false, false, Some("neutral-limit")) if stability.n_unstable.is_none() => {
+            "not known to be stable or not"
+        }
         (false, false, _) => "unstable",
     }
 }
@@ -168,8 +172,10 @@ fn print_system(
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let Asked { setting, units, .. } = asked;
-    for (name, text) in setting.system().iter().flat_map(|s| s.expressions()) {
-        row(name, text.split_whitespace().collect::<Vec<_>>().join(" "))?;
+    let system = setting.system().into_iter();
+    for (name, text) in system.flat_map(SystemModel::expressions) {
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        row(name, shortened(&line).into_owned())?;
     }
     for (own, value) in setting.own() {
         let unit = unit_behind(&own.unit);
@@ -186,7 +192,7 @@ fn print_system(
     if !point.line_of_delays {
         row(
             "delays",
-            "P or Q depends on tau: this one alone is known".into(),
+            "the system depends on tau: this one alone is known".into(),
         )?;
     }
     if point.memory.is_none() {

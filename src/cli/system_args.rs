@@ -9,7 +9,7 @@ use crate::setting::system::{SpeedUnit, SystemModel, shipped};
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::nearest::did_you_mean;
-use crate::text::{Shown, SpecError};
+use crate::text::{Shown, SpecError, words};
 
 use super::asked::Asked;
 use super::failure::Failure;
@@ -82,8 +82,9 @@ impl SystemArgs {
         let mut setting = Setting::of_system(Arc::clone(&model));
         let mut others = OTHERS.map(flag);
         for set in sets.each()? {
-            let own = model.parameters.iter().find(|own| own.name == set.name);
-            let other = OTHERS.into_iter().position(|p| p.name() == set.name);
+            let named = |name: &str| words::same(name, &set.name);
+            let own = model.parameters.iter().find(|own| named(&own.name));
+            let other = OTHERS.into_iter().position(|p| named(p.name()));
             let of_other = other.map(|other| OTHERS[other].dimension());
             let dimension = own.map(|own| own.dimension).or(of_other);
             let fits = dimension.map_or(Ok(()), |dimension| set.amount.check(dimension));

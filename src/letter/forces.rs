@@ -3,6 +3,7 @@
 use super::claim::{Claim, ClaimValue, Verdict};
 use super::return_map::PLACE;
 use crate::answers::Trace;
+use crate::model::least_squares::LeastSquares;
 
 /// Changes of the load between which the decay is fitted, in N0: small enough that the rightmost
 /// root is left alone, far above the error of a motion.
@@ -101,10 +102,9 @@ impl Decay {
 
 /// The slope of the straight line through points, by least squares; NaN for fewer than two.
 fn slope(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let [t, y] = [0, 1].map(|i| points.iter().map(|p| [p.0, p.1][i]).sum::<f64>() / n);
-    let of = |weigh: fn(f64, f64) -> f64| points.iter().map(move |p| weigh(p.0 - t, p.1 - y));
-    of(|t, y| t * y).sum::<f64>() / of(|t, _| t * t).sum::<f64>()
+    let (times, heights): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let line = LeastSquares::of([vec![1.0; points.len()], times]);
+    line.map_or(f64::NAN, |line| line.solve(&heights)[1])
 }
 
 #[cfg(test)]

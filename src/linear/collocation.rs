@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
+use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
 use faer::{Mat, Par, Spec};
 use num_complex::Complex64;
 
@@ -71,6 +71,55 @@ pub(crate) struct Late<'c> {
 #[must_use]
 pub(crate) fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
     eigenvalues_of(&late_generator(of, nodes))
+}
+
+/// The eigenvalues with Im λ ≥ 0 of the real matrix of `size` rows with these entries, by falling
+/// real part. None if the iteration fails.
+#[must_use]
+pub(crate) fn eigenvalues_of_real(
+    size: usize,
+    entry: impl Fn(usize, usize) -> f64,
+) -> Option<Vec<Complex64>> {
+    if size == 0 {
+        return Some(Vec::new());
+    }
+    eigenvalues_of(&Mat::from_fn(size, size, entry))
+}
+
+/// The eigenvalues of the complex matrix of `size` rows with these entries, in no order. None if
+/// the iteration fails.
+#[must_use]
+pub(crate) fn eigenvalues_of_complex(
+    size: usize,
+    entry: impl Fn(usize, usize) -> Complex64,
+) -> Option<Vec<Complex64>> {
+    if size <= 1 {
+        return Some((0..size).map(|i| entry(i, i)).collect());
+    }
+    let matrix = Mat::from_fn(size, size, entry);
+    let mut values = Diag::<Complex64>::zeros(size);
+    let none = ComputeEigenvectors::No;
+    let scratch = evd_scratch::<Complex64>(size, none, none, Par::Seq, Spec::default());
+    let mut memory = MemBuffer::new(scratch);
+    evd_cplx(
+        matrix.as_ref(),
+        values.as_mut(),
+        None,
+        None,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Spec::default(),
+    )
+    .ok()?;
+    let found: Vec<Complex64> = (0..size).map(|i| values[i]).collect();
+    found.iter().all(|z| z.is_finite()).then_some(found)
+}
+
+/// Entry of the matrix that differentiates values at the points of [`eigenvalues`] on [−τ, 0], of
+/// which the first is 0 and the last −τ.
+#[must_use]
+pub(crate) fn derivative(nodes: usize, row: usize, column: usize, tau: f64) -> f64 {
+    differentiation(nodes, row, column) * 2.0 / tau
 }
 
 fn eigenvalues_of(matrix: &Mat<f64>) -> Option<Vec<Complex64>> {

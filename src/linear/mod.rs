@@ -28,6 +28,7 @@
 //! - `feedback_loop`: the feedback loop about steady sliding, as a system
 //! - `general`: any linear system with one delay
 //! - `line`: linear models, and what is told of each whatever its kind
+//! - [`matrix`]: systems that are given as matrices, of any rank
 //! - `newton`: polishing of a root (Halley's method) and its error
 //! - `real_zeros`: all zeros of a real function of the frequency
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
@@ -58,6 +59,7 @@ pub mod general;
 pub mod line;
 pub mod lobes;
 pub mod margins;
+pub mod matrix;
 pub mod newton;
 pub mod plane;
 mod real_zeros;

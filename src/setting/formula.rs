@@ -12,8 +12,8 @@ use super::units::Units;
 use crate::model::elementary::{atan, cos, cosh, ln, sin, sinh, tanh};
 use crate::model::law::formula::{Builder, Node, Operand};
 use crate::model::{FrictionLaw, ModelError};
-use crate::text::SpecError;
 use crate::text::nearest::did_you_mean;
+use crate::text::{SpecError, words};
 
 /// The name of the speed.
 const SPEED: &str = "v";
@@ -58,7 +58,7 @@ fn place_of(name: &str, text: &str) -> Range<usize> {
 
 /// What a name stands for; `own` are the names before it that only this formula has.
 fn meaning(name: &str, own: &[&str]) -> Result<Name, &'static str> {
-    if let Some(parameter) = Parameter::from_name(name) {
+    if let Some(parameter) = Parameter::from_name(&words::spelled(name)) {
         return match parameter.group() {
             Group::Law if parameter != Parameter::MuPrimeRest => Ok(Name::Known(parameter)),
             _ => Err("it is another parameter of slipmap"),
@@ -113,7 +113,7 @@ impl FormulaModel {
 fn own_parameter((index, name): (usize, &str)) -> Arc<OwnParameter> {
     Arc::new(OwnParameter {
         index,
-        name: name.to_owned(),
+        name: words::spelled(name).into_owned(),
         long_name: format!("{name} of the friction law"),
         default: 0.0,
         minimum: -LARGEST,
@@ -169,7 +169,8 @@ impl GivenFormula {
     /// Its own parameter of that name.
     #[must_use]
     pub fn own_named(&self, name: &str) -> Option<&Arc<OwnParameter>> {
-        self.model.own.iter().find(|own| own.name == name)
+        let mut own = self.model.own.iter();
+        own.find(|own| words::same(&own.name, name))
     }
 
     /// The error of a name that is none of its parameters.
@@ -241,6 +242,7 @@ impl GivenFormula {
         let mut next = || stack.pop().unwrap_or(Operand::Number(f64::NAN));
         match op {
             Op::Number(value) => Operand::Number(value),
+            Op::Pi => Operand::Number(std::f64::consts::PI),
             Op::Value(0) => make.speed(),
             Op::Value(index) => Operand::Number(match self.model.names[usize::from(index) - 1] {
                 Name::Known(parameter) => known(parameter),

@@ -2,7 +2,7 @@
 
 use super::no_answer::NoAnswer;
 use super::parameter::Parameter;
-use super::system::Evaluation;
+use super::system::{Evaluation, SystemModel};
 use super::values::Setting;
 use crate::linear::feedback_loop::{FeedbackLoop, Friction};
 use crate::linear::general::Class;
@@ -138,6 +138,17 @@ impl Setting {
         }
     }
 
+    /// The linear model and the unit of time, where best settings of such a model are searched.
+    ///
+    /// # Errors
+    /// As [`Setting::answered`], and for systems of which no best settings are known.
+    pub(crate) fn searched(&self) -> Result<(Linear, f64), NoAnswer> {
+        match self.system().and_then(SystemModel::without_curves) {
+            Some(of) => Err(NoAnswer::Unsearched(of)),
+            None => self.answered(),
+        }
+    }
+
     /// The linear model and the unit of time; the expressions of a system from a file are evaluated
     /// in `scratch`.
     ///
@@ -145,7 +156,7 @@ impl Setting {
     /// As [`Setting::linear`].
     pub fn linear_in(&self, scratch: &mut Evaluation) -> Result<(Linear, f64), NoAnswer> {
         if let Some(system) = self.system_in(scratch) {
-            return Ok((Linear::General(Box::new(system?)), 1.0));
+            return Ok((system?, 1.0));
         }
         if self.feedback().is_sampled() {
             return self.sampled();

@@ -311,7 +311,7 @@ fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
         of any system";
     let (why, help) = match field.source() {
         Source::Line if field == Field::DelayMargin && model.depends_on_delay() => (
-            "it needs a line of delays, and P or Q depends on tau",
+            "it needs a line of delays, and the system depends on tau",
             "n_unstable and the roots are counted delay by delay",
         ),
         Source::Roots(OfRoots::Derivative(_)) => {

@@ -19,6 +19,9 @@ pub enum NoAnswer {
     /// The model is of a kind that is not answered at any delay.
     #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
     Refused,
+    /// No best setting is searched.
+    #[error("best settings are not searched of {0}")]
+    Unsearched(&'static str),
     /// There is no equation.
     #[error("this system is not answered: P and Q are both 0")]
     Zero,
@@ -38,7 +41,9 @@ impl From<NoAnswer> for ModelError {
                 polynomial,
                 "an expression that has a finite value, A of a smaller degree than B",
             ),
-            NoAnswer::Refused | NoAnswer::Zero => of("system", "one that is answered"),
+            NoAnswer::Refused | NoAnswer::Unsearched(_) | NoAnswer::Zero => {
+                of("system", "one that is answered")
+            }
         }
     }
 }

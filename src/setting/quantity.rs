@@ -6,7 +6,7 @@ use super::parameter::Parameter;
 use super::system::SystemModel;
 use super::system::parameter::OwnParameter;
 use super::units::Units;
-use crate::text::Shown;
+use crate::text::{Shown, words};
 
 /// The quantity of an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,10 +44,11 @@ impl SystemModel {
         own.chain(others.map(|p| Quantity::Known(*p))).collect()
     }
 
-    /// The quantity with this name.
+    /// The quantity with this name, in any of its spellings.
     #[must_use]
     pub fn quantity(&self, name: &str) -> Option<Quantity> {
-        self.quantities().into_iter().find(|of| of.name() == name)
+        let mut all = self.quantities().into_iter();
+        all.find(|of| words::same(of.name(), name))
     }
 }
 

@@ -11,7 +11,7 @@ use super::parameter::{Group, Parameter};
 use super::units::Units;
 use super::values::Setting;
 use crate::model::table::TableColumn;
-use crate::text::toml_reader::quoted;
+use crate::text::toml_reader::{key, quoted};
 
 /// A number as text that is read as the same number.
 #[must_use]
@@ -47,7 +47,7 @@ pub fn setting_text(
     if let Some(system) = setting.system() {
         let named = format!("system = {}\n", system.to_inline_table());
         let own = setting.own().filter(|(_, value)| !value.is_nan());
-        let own = own.map(|(own, value)| format!("{} = {}\n", own.name, number(value)));
+        let own = own.map(|(own, value)| format!("{} = {}\n", key(&own.name), number(value)));
         let fixed = table("fixed", setting, wanted) + &own.collect::<String>();
         return named + &fixed + &units_text(units);
     }
@@ -59,10 +59,10 @@ pub fn setting_text(
         });
         text += &format!("law = \"{}\"\n", law.name());
         if let LawKind::Formula(formula) = law {
-            let key = TableColumn::MuK.name();
-            text += &format!("{key} = {}\n", quoted(formula.text()));
+            let of_formula = TableColumn::MuK.name();
+            text += &format!("{of_formula} = {}\n", quoted(formula.text()));
             for (own, value) in setting.own().filter(|(_, value)| !value.is_nan()) {
-                text += &format!("{} = {}\n", own.name, number(value));
+                text += &format!("{} = {}\n", key(&own.name), number(value));
             }
             text += &own_units(setting);
         }
@@ -85,7 +85,7 @@ pub fn setting_text(
 fn own_units(setting: &Setting) -> String {
     let measured = setting.own().filter(|(own, _)| own.dimension != [0; 3]);
     let units: Vec<String> = measured
-        .map(|(own, _)| format!("{} = {}", own.name, quoted(&own.unit)))
+        .map(|(own, _)| format!("{} = {}", key(&own.name), quoted(&own.unit)))
         .collect();
     match units.is_empty() {
         true => String::new(),

@@ -1,6 +1,6 @@
 //! The keys of files of systems, one row for each, and the limits of the expressions in them.
 
-use super::expression::{DEEPEST, LARGEST_EXPONENT, LONGEST, functions};
+use super::expression::{DEEPEST, LARGEST_EXPONENT, LONGEST, NUMBER_PI, functions};
 use super::keys::{Key, key, needed};
 use super::parameter::LARGEST;
 use crate::linear::general::MOST_DEGREE;
@@ -12,8 +12,11 @@ pub(crate) const LONGEST_NAME: usize = 40;
 
 const POLYNOMIAL: &str = "an expression in s, or a list of coefficients, the highest power first";
 
+const MATRIX: &str =
+    "an array of rows, each an array of numbers and expressions without s; at most 32 rows";
+
 /// The keys of a system.
-pub(crate) const SYSTEM: [Key; 7] = [
+pub(crate) const SYSTEM: [Key; 13] = [
     key(
         "title",
         "one line of at most 200 characters",
@@ -43,6 +46,44 @@ pub(crate) const SYSTEM: [Key; 7] = [
         POLYNOMIAL,
         "none, beside P and Q",
         "the feedback of differences; its degree is below that of B",
+    ),
+    key(
+        "A0",
+        MATRIX,
+        "none, beside other forms",
+        "what acts at once in x'(t) - E1 x'(t - tau) = A0 x(t) + A1 x(t - tau)",
+    ),
+    key(
+        "A1",
+        MATRIX,
+        "none, beside feedback",
+        "what is delayed; a system has A1 or feedback",
+    ),
+    key(
+        "E1",
+        MATRIX,
+        "0",
+        "the delayed rates; its spectral radius is below 1 where finitely many roots are unstable",
+    ),
+    key(
+        "feedback",
+        "{ B, K, C }, each an array of rows as A0 is",
+        "none, beside A1",
+        "A1 = B K C; K may be left out and is 1 then",
+    ),
+    key(
+        "D",
+        "an array of 2 to 9 polynomials, each a number or as P is",
+        "none, beside other forms",
+        "powers of the delay, D = p0 + p1 exp(-s tau) + p2 exp(-2 s tau) + ...; none has a higher \
+         degree than p0",
+    ),
+    key(
+        "ignore_roots_at_zero",
+        "a whole number, at most 16",
+        "0",
+        "so many roots at 0, which D has at every delay, come from its form and do not count; D \
+         times s for a distributed delay has one",
     ),
     key(
         "parameters",
@@ -97,13 +138,14 @@ pub(crate) const SPEED_AXIS: [Key; 3] = [
 ];
 
 /// The limits of expressions and of systems, each with what it is about.
-pub(crate) fn limits() -> [(&'static str, String); 8] {
+pub(crate) fn limits() -> [(&'static str, String); 9] {
     let functions: Vec<&str> = functions(true).collect();
     [
         ("functions of an expression", functions.join(", ")),
+        ("numbers by name", format!("{NUMBER_PI} or π")),
         ("bytes of an expression", format!("{LONGEST} at most")),
         (
-            "signs and parentheses within one another",
+            "signs, exponents and parentheses within one another",
             format!("{DEEPEST} at most"),
         ),
         (
@@ -121,7 +163,10 @@ pub(crate) fn limits() -> [(&'static str, String); 8] {
         ("parameters", format!("{MOST_PARAMETERS} at most")),
         (
             "names of parameters",
-            format!("a letter, then letters, digits and _, {LONGEST_NAME} characters at most"),
+            format!(
+                "a letter, then letters, digits and _, {LONGEST_NAME} characters at most; letters \
+                 are ASCII or Greek, and Greek ones stand in quotes as keys: \"ω\" = 2"
+            ),
         ),
     ]
 }

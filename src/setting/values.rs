@@ -11,7 +11,7 @@ use super::parameter::{Group, Parameter};
 use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
 use super::system::{Evaluation, SystemModel};
-use crate::linear::general::System;
+use crate::linear::line::Linear;
 use crate::model::{Dashpots, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
 
 /// One value for every parameter: a point of parameter space.
@@ -99,7 +99,7 @@ impl Setting {
     }
 
     /// The system from a file at this setting, evaluated in `at`; none for the letter's system.
-    pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<System, NoAnswer>> {
+    pub(super) fn system_in(&self, at: &mut Evaluation) -> Option<Result<Linear, NoAnswer>> {
         let system = self.file()?;
         system.put_into(at, self.feedback());
         Some(system.model.at(at))

@@ -1,6 +1,7 @@
 //! Groups and datasets of a map or trace, written as they are described.
 
 use hdf5::plist::group_create::LinkCreationOrder;
+use hdf5::plist::link_create::CharEncoding;
 use hdf5::{Dataset, Extents, Group, Location};
 
 use super::attributes::{put, put_numbers};
@@ -36,6 +37,9 @@ pub(super) struct Layout {
 pub(super) fn create(group: &Group, variable: &Variable, layout: &Layout) -> hdf5::Result<Dataset> {
     let name = &*variable.name;
     let mut builder = named(group.new_dataset_builder());
+    if !name.is_ascii() {
+        builder = builder.char_encoding(CharEncoding::Utf8);
+    }
     match variable.values.as_deref() {
         Some([value]) if variable.dimensions.is_empty() => {
             let dataset = builder.empty::<f64>().create(name)?;

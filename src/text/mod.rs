@@ -6,6 +6,7 @@
 //! - `number`: numbers as messages show them
 //! - `toml_reader`: TOML with the place of every key and value
 //! - `toml_size`: bounds the memory for reading TOML
+//! - `words`: the letters of names, ASCII or Greek, and which spellings are one name
 
 #[cfg(feature = "sweep")]
 pub(crate) mod document;
@@ -18,6 +19,8 @@ mod number;
 pub(crate) mod toml_reader;
 #[cfg(feature = "sweep")]
 mod toml_size;
+#[cfg(feature = "sweep")]
+pub(crate) mod words;
 
 #[cfg(feature = "sweep")]
 pub use hexadecimal::in_hexadecimal;

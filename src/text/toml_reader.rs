@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::nearest::did_you_mean;
 use super::toml_size;
+use super::words;
 use crate::text::Shown;
 
 /// The most characters of a text for display.
@@ -73,9 +74,26 @@ pub(crate) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, SpecError> {
     toml_size::check(text)?;
     DeTable::parse(text).map_err(|error| SpecError {
         message: error.message().to_owned(),
+        help: error.span().and_then(|span| greek_key_at(text, span.start)),
         span: error.span(),
-        help: None,
     })
+}
+
+/// What is said where TOML is not understood at a Greek letter outside quotes.
+fn greek_key_at(text: &str, at: usize) -> Option<String> {
+    let word = text.get(at..)?;
+    let end = word.find(|c| !words::belongs(c)).unwrap_or(word.len());
+    let found = &word[..end];
+    (!found.is_ascii()).then(|| format!("a key with Greek letters stands in quotes: \"{found}\""))
+}
+
+/// A key as TOML has it, in quotes where it needs them.
+pub(crate) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    match !name.is_empty() && name.chars().all(bare) {
+        true => name.to_owned(),
+        false => quoted(name),
+    }
 }
 
 /// A basic string of TOML.

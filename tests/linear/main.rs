@@ -24,6 +24,7 @@ mod walk;
 #[path = "../common/winding.rs"]
 mod winding;
 
+mod at_origin;
 #[cfg(feature = "cli")]
 mod best_general;
 #[cfg(feature = "explore")]
@@ -49,6 +50,8 @@ mod letter;
 mod margin_maps;
 mod margins;
 mod margins_beyond;
+#[cfg(feature = "sweep")]
+mod matrices;
 #[cfg(feature = "explore")]
 mod near_resonance;
 #[cfg(feature = "cli")]

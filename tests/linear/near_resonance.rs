@@ -180,7 +180,7 @@ fn weak_feedback() {
         };
         let tau = delay(&mut chance, &known).abs();
         at.own = vec![damping, stiffness, load, velocity];
-        let system = model.at(&mut at).unwrap();
+        let system = model.at(&mut at).unwrap().system().unwrap();
         let found = DelayLine::of(&system).count(tau, MarginalTolerance::default());
         counted += u64::from(check(&known, found, tau, &of));
         let same = System::of_coefficients(&[of.p[0], of.p[1], 1.0], &of.q).unwrap();
@@ -314,7 +314,7 @@ fn weak_feedback_at_given_points() {
     let line = |damping: f64, load: f64| {
         let mut at = model.defaults();
         at.own = vec![damping, 1.0, load, 0.0];
-        DelayLine::of(&model.at(&mut at).unwrap())
+        DelayLine::of(&model.at(&mut at).unwrap().system().unwrap())
     };
     let near = |found: f64, known: f64| assert!((found - known).abs() < 1e-8, "{found} {known}");
     let first = line(1e-7, 1e-6).stable_intervals().next().unwrap();

@@ -288,7 +288,7 @@ fn system_files(page: &mut String) {
     paragraph(
         page,
         "A file, or the table `system` of a sweep file, names a system with one delay by its \
-         characteristic function D(s): either P and Q, or B and A.",
+         characteristic function D(s), by P and Q, or B and A, or D; or by its matrices.",
     );
     heading(page, 2, "Keys of a system");
     keys_of(page, &system_keys::SYSTEM);
@@ -312,8 +312,8 @@ fn system_files(page: &mut String) {
     heading(page, 2, "Limits");
     paragraph(
         page,
-        "Expressions have numbers, names of parameters, `tau`, `+ - * / ^`, parentheses and \
-         functions; divisors, exponents and arguments of functions are without s.",
+        "Expressions have numbers, names of parameters, `tau` (or `τ`), `+ - * / ^`, parentheses \
+         and functions; divisors, exponents and arguments of functions are without s.",
     );
     let limits = system_keys::limits();
     let rows = limits.map(|(of, limit)| [of.to_owned(), limit]);

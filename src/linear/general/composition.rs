@@ -24,6 +24,8 @@ const ENOUGH: [f64; 2] = [1e-6, 1e-11];
 pub(super) enum Composition {
     /// P and Q.
     Direct,
+    /// P and Q, less a root at 0 at every delay.
+    BesideOrigin,
     /// B, A and R, with digits that P and Q lose.
     Feedback(FeedbackForm),
     /// B, A and R with a latency: only without it P and Q say it all.
@@ -55,7 +57,7 @@ impl System {
     #[inline]
     pub(super) fn feedback_form(&self) -> Option<&FeedbackForm> {
         match &self.composition {
-            Composition::Direct => None,
+            Composition::Direct | Composition::BesideOrigin => None,
             Composition::Feedback(feedback) | Composition::Late(feedback) => Some(feedback),
         }
     }
@@ -157,6 +159,9 @@ impl System {
             let turned = tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend;
             return p_third + jet.delayed * (third + tau * turned);
         }
+        if self.leaves_origin_out() {
+            return self.third_beside_origin(jet, tau, lambda);
+        }
         let [_, slope, bend] = self.q.jet(lambda);
         let p_third = self.p.derivative().jet(lambda)[2];
         p_third + tau * jet.delayed * (tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend)
@@ -169,7 +174,11 @@ impl System {
         }
         let parabola = Polynomial::new(&[0.0, tau, -0.5 * tau * tau]).ok()?;
         let fed = self.q.times(&parabola).ok()?;
-        Some(self.without_delay().plus(&fed, -1.0))
+        let sum = match self.leaves_origin_out() {
+            true => self.p.plus(&self.q, 1.0),
+            false => self.without_delay(),
+        };
+        Some(sum.plus(&fed, -1.0))
     }
 
     /// Approximate roots by collocation.

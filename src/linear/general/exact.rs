@@ -94,7 +94,7 @@ impl System {
             return None;
         }
         let [p, q] = match &self.composition {
-            Composition::Late(_) => return None,
+            Composition::Late(_) | Composition::BesideOrigin => return None,
             Composition::Feedback(FeedbackForm {
                 open,
                 gain,

@@ -157,7 +157,9 @@ impl DelayLine {
             }
         };
         let origin = !on_axis.on_real_axis().decided();
-        if origin {
+        if system.leaves_origin_out() {
+            // Near 0 only a real root passes, which the start of the line finds.
+        } else if origin {
             self.rests_at_origin();
         } else {
             self.opens_below(near.open_below);

@@ -10,6 +10,7 @@
 //! - `right_of`: how many roots lie right of a line, in closed form
 //! - `turning`: the whole turns that the count is made of
 //! - `equation`: a system as what finds and follows roots takes it
+//! - `at_origin`: roots at 0 at every delay that are left out
 //! - `exact`: D and P on the axis with twice the digits
 //! - `rightmost`: the rightmost roots, or where roots accumulate
 //! - `line`: all delays of a setting: crossings and counts
@@ -32,6 +33,7 @@
 //! - `routh`: zeros right of the imaginary axis by Routh's array
 //! - `shifted`: P and Q on any vertical line, F = |P|² − |κQ|² there, and the argument of −P Q*
 
+mod at_origin;
 mod composition;
 mod count;
 pub mod curves;
@@ -64,6 +66,7 @@ mod unit;
 mod zero_delay;
 pub(crate) mod zeros;
 
+pub use at_origin::OriginError;
 pub use latency::Form;
 pub use line::DelayLine;
 pub use plane::{SystemPlane, SystemSetting};

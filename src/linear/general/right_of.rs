@@ -19,6 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
+use super::at_origin::AtOrigin;
 use super::composition::Composition;
 use super::latency::{Budget, Form, MOST_STEPS_OF_A_CELL};
 use super::parts::{Angle, Decay};
@@ -222,7 +223,14 @@ impl RootCounter {
             return self.late_right_of(feedback, tau, line);
         }
         let mut turned = WholeTurns::at(tau);
-        let without_turns = self.on_line(tau, line, |turn| turned.add(&turn));
+        let found = self.on_line(tau, line, |turn| turned.add(&turn));
+        let without_turns = found.and_then(|(without_turns, at_origin)| {
+            let left_out = match at_origin {
+                Some(at) => at.counted(tau).ok_or(NoNumber::Undecided)?,
+                None => i64::from(self.system.leaves_origin_out() && line < 0.0),
+            };
+            Ok(without_turns - left_out)
+        });
         turned.right_of(without_turns)
     }
 
@@ -234,13 +242,15 @@ impl RootCounter {
             return self.late_unstable(Form::Delay, 0.0);
         }
         let mut turns = Vec::with_capacity(self.system.p.degree());
-        let without_turns = self.on_line(0.0, 0.0, |turn| {
+        let found = self.on_line(0.0, 0.0, |turn| {
             turns.push(turn);
             true
         });
+        let (without_turns, at_origin) = found.ok()?;
         Some(Turning {
-            without_turns: without_turns.ok()?,
+            without_turns,
             turns,
+            at_origin,
         })
     }
 
@@ -296,7 +306,7 @@ impl RootCounter {
         tau: f64,
         line: f64,
         mut each: impl FnMut(Turn) -> bool,
-    ) -> Result<i64, NoNumber> {
+    ) -> Result<(i64, Option<AtOrigin>), NoNumber> {
         let open = NoNumber::Undecided;
         let system = &self.system;
         match system.class() {
@@ -305,7 +315,8 @@ impl RootCounter {
             _ => {}
         }
         let on_line = system.on_line(line, Decay::new(line, tau).ok_or(open)?);
-        if !on_line.on_real_axis().decided() {
+        let through_origin = line == 0.0 && system.leaves_origin_out();
+        if !through_origin && !on_line.on_real_axis().decided() {
             return Err(open);
         }
         let mut modulus = on_line.modulus();
@@ -329,10 +340,19 @@ impl RootCounter {
         let constant = modulus.coefficient(0);
         let mut without_turns = self.p.right_of(line) as i64;
         // Where that is open though D(σ) is not, |p| = |q| without a root: then ν₀ = 0.
-        if constant.decided() && constant.value < 0.0 {
+        let near = found.and_then(|near| near.sign);
+        let at_origin = match through_origin {
+            true => Some(system.at_origin(near.ok_or(open)?)),
+            false => None,
+        };
+        let fed = match through_origin {
+            true => near == Some(false),
+            false => constant.decided() && constant.value < 0.0,
+        };
+        if fed {
             without_turns += self.q.half_turns_at_zero(line) - self.p.half_turns_at_zero(line);
         }
-        Ok(without_turns)
+        Ok((without_turns, at_origin))
     }
 
     fn turn(&self, on_line: &Shifted, line: f64, switch: &Switch) -> Option<Turn> {

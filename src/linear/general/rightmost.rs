@@ -94,7 +94,7 @@ impl Spectrum {
     }
 
     /// These roots times `by`.
-    fn scale(&mut self, by: f64) {
+    pub(in crate::linear) fn scale(&mut self, by: f64) {
         self.margin = scaled_margin(self.margin, self.abscissa, by);
         self.abscissa *= by;
         self.essential_abscissa *= by;

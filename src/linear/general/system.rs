@@ -223,13 +223,14 @@ impl System {
         ))
     }
 
-    /// P + Q: its zeros are the roots without delay.
+    /// P + Q: its zeros are the roots without delay; divided by λ where a root at 0 is left out.
     pub(super) fn without_delay(&self) -> Polynomial {
         match self.feedback_form() {
             Some(FeedbackForm { open, channel, .. }) => open.scaled(Rounded {
                 value: 1.0 - channel.memory,
                 error: 0.5 * f64::EPSILON,
             }),
+            None if self.leaves_origin_out() => self.p.plus(&self.q, 1.0).divided_by_variable(),
             None => self.p.plus(&self.q, 1.0),
         }
     }
@@ -288,6 +289,9 @@ impl System {
     /// D, D′ and D″ at λ, with Q as what is fed back.
     #[must_use]
     pub fn jet(&self, tau: f64, lambda: Complex64) -> Jet {
+        if self.leaves_origin_out() {
+            return self.jet_beside_origin(tau, lambda);
+        }
         let difference = one_minus_exp(-tau * lambda);
         let delayed = 1.0 - difference;
         let (kept, fed, part) = match self.feedback_form() {
@@ -317,6 +321,9 @@ impl System {
     /// A bound on the rounding error of D at λ, to within a small factor.
     #[must_use]
     pub fn rounding(&self, jet: &Jet, tau: f64, lambda: Complex64) -> f64 {
+        if self.leaves_origin_out() {
+            return self.rounding_beside_origin(jet, tau, lambda);
+        }
         let size = lambda.l1_norm();
         let unit = (self.p.degree().max(self.q.degree()) as f64 + 4.0) * f64::EPSILON;
         let part = |p: &Polynomial, by: f64| {

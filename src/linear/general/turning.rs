@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::at_origin::AtOrigin;
+
 /// The number of roots right of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RightOf {
@@ -56,6 +58,8 @@ pub struct Turning {
     /// n_P + ν₀.
     pub(super) without_turns: i64,
     pub(super) turns: Vec<Turn>,
+    /// What a root at 0 that is left out has to do with it.
+    pub(super) at_origin: Option<AtOrigin>,
 }
 
 impl Turning {
@@ -65,7 +69,9 @@ impl Turning {
     pub fn at(&self, tau: f64) -> Option<u64> {
         let mut turned = WholeTurns::at(tau);
         let decided = self.turns.iter().all(|turn| turned.add(turn));
-        decided.then(|| turned.roots(self.without_turns)).flatten()
+        let left_out = self.at_origin.map_or(Some(0), |at| at.counted(tau))?;
+        let without_turns = self.without_turns - left_out;
+        decided.then(|| turned.roots(without_turns)).flatten()
     }
 }
 

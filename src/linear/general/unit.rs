@@ -96,11 +96,11 @@ impl System {
                 ..of.channel
             },
         });
-        Self::classified(
-            p,
-            q,
-            feedback.map_or(Composition::Direct, Composition::from),
-        )
+        let without_feedback = match self.leaves_origin_out() {
+            true => Composition::BesideOrigin,
+            false => Composition::Direct,
+        };
+        Self::classified(p, q, feedback.map_or(without_feedback, Composition::from))
     }
 }
 

@@ -30,8 +30,13 @@ impl DelayLine {
         (origin, settled): (bool, bool),
     ) {
         let mut sum = system.without_delay();
-        if origin {
+        let left_out = system.leaves_origin_out();
+        if origin || left_out {
             self.find_passage(system, near);
+        }
+        // Such a system has divided its sum by λ already.
+        let passes_at_zero = self.passage.is_some_and(|p| p.tau.abs() <= p.error);
+        if (origin && !left_out) || (left_out && passes_at_zero) {
             sum = sum.divided_by_variable();
         }
         let decided = self.count_right(system, &sum);
@@ -52,6 +57,7 @@ impl DelayLine {
         if !known {
             self.start_by_count(RootCounter::new(system).unstable());
         }
+        self.marginal_at_zero |= left_out && passes_at_zero;
     }
 
     /// Finds where a real root passes 0: at τ* = (p₁ + q₁)/q₀, to the right where F(0⁺) > 0.

@@ -5,6 +5,7 @@ use super::general::GeneralRoots;
 use super::letter::LetterRoots;
 use crate::linear::feedback_loop::FeedbackLoop;
 use crate::linear::general::{RootCounter, System};
+use crate::linear::matrix::{MatrixRoots, MatrixSystem};
 use crate::linear::sampled::{SampledLoop, SampledRoots};
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups, Lags};
@@ -29,6 +30,8 @@ pub enum Linear {
     General(Box<System>),
     /// One that is read from time to time.
     Sampled(SampledLoop),
+    /// One that is given as matrices.
+    Matrix(Box<MatrixSystem>),
 }
 
 impl Linear {
@@ -42,7 +45,8 @@ impl Linear {
         Self::General(Box::new(of_loop.system()))
     }
 
-    /// The system; the letter's own in feedback form, none of a sampled one.
+    /// The system; the letter's own in feedback form, none of a sampled one or of
+    /// matrices.
     #[must_use]
     pub fn system(&self) -> Option<System> {
         match self {
@@ -51,7 +55,7 @@ impl Linear {
                 Some(of.system())
             }
             Self::General(system) => Some(**system),
-            Self::Sampled(_) => None,
+            Self::Sampled(_) | Self::Matrix(_) => None,
         }
     }
 
@@ -73,6 +77,7 @@ impl Linear {
             Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
             Self::General(system) => Box::new(GeneralRoots::new(counter(system))),
             Self::Sampled(of) => Box::new(SampledRoots::new(*of)),
+            Self::Matrix(of) => Box::new(MatrixRoots::new((**of).clone())),
         }
     }
 }

@@ -31,6 +31,16 @@ pub trait Roots {
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0.
     fn spectrum(&self, tau: f64, wanted: usize) -> Spectrum;
 
+    /// [`Roots::spectrum`], where the number of unstable roots at that delay was counted before.
+    fn counted(&self, tau: f64, wanted: usize, _count: Option<Count>) -> Spectrum {
+        self.spectrum(tau, wanted)
+    }
+
+    /// The real part at which roots accumulate at the delay `tau` ≥ 0; −∞ where they do not.
+    fn essential_abscissa(&self, _tau: f64) -> f64 {
+        f64::NEG_INFINITY
+    }
+
     /// The number of roots right of Re λ = `line` at the delay `tau` ≥ 0.
     fn right_of(&self, tau: f64, line: f64) -> RightOf;
 

@@ -285,6 +285,10 @@ impl Roots for SampledRoots {
         self.counted(tau, wanted, self.count(tau, 1.0))
     }
 
+    fn counted(&self, tau: f64, wanted: usize, count: Option<Count>) -> Spectrum {
+        Self::counted(self, tau, wanted, count)
+    }
+
     fn right_of(&self, tau: f64, line: f64) -> RightOf {
         match self.samples(tau) {
             Some(multiple) => match self.of.outside(line * self.of.sample_time, multiple) {

@@ -17,7 +17,7 @@ export function aboutSystem(point, time) {
     rows.push(["memory", told(memory, 9)], ["latency", time(point.latency)]);
     rows.push(["latency margin", margin === null ? "infinite, or not known" : time(margin)]);
   }
-  if (!point.line_of_delays) rows.push(["other delays", "not known: P or Q depends on the delay"]);
+  if (!point.line_of_delays) rows.push(["other delays", "not known: the system depends on the delay"]);
   const { essential_abscissa: essential } = point;
   if (essential !== null) rows.push(["roots accumulate at", `Re λ = ${told(essential)}`]);
   return rows;

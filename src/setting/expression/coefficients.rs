@@ -1,18 +1,24 @@
 //! A polynomial that stands in a file as a list of its coefficients, the highest power first.
 
-use super::reader::{VARIABLE, names_in, read_number};
-use super::{Misread, Read, Written};
+use super::names::names_in;
+use super::reader::{VARIABLE, read_number};
+use super::{Misread, Read, Tape, Written};
 use crate::text::Shown;
 use crate::text::toml_reader::{Entry, SpecError};
 
 /// A coefficient: the expression that was given, or a number that is written out.
-enum Coefficient {
+pub(in crate::setting) enum Coefficient {
     Number(f64),
     Given(Written),
 }
 
 impl Coefficient {
-    fn of(name: String, element: &Entry, whole: &str) -> Result<Self, SpecError> {
+    /// What an element of a list gives.
+    pub(in crate::setting) fn of(
+        name: String,
+        element: &Entry,
+        whole: &str,
+    ) -> Result<Self, SpecError> {
         if element.is_string() {
             return Written::of(name, element, whole).map(Self::Given);
         }
@@ -76,6 +82,34 @@ fn sum(coefficients: &[Coefficient]) -> String {
 }
 
 impl Written {
+    /// The number that is written here, of these names; one with s in it is told `with_variable`.
+    pub(in crate::setting) fn read_without_variable(
+        &self,
+        names: &[&str],
+        with_variable: [&str; 2],
+    ) -> Result<Tape, SpecError> {
+        self.read(|text| check_number(text, names, with_variable))?;
+        self.read_polynomial(names)
+    }
+
+    /// A polynomial that may also be a number alone.
+    pub(in crate::setting) fn term(
+        name: &str,
+        entry: &Entry,
+        whole: &str,
+    ) -> Result<Self, SpecError> {
+        if !entry.is_number() {
+            return Self::polynomial(name, entry, whole);
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            text: Shown(entry.number()?).to_string(),
+            span: entry.span.clone(),
+            from: None,
+            coefficients: Vec::new(),
+        })
+    }
+
     /// A polynomial as written in a text: an expression, or a list of coefficients, which is turned
     /// into one. Coefficients that are expressions are kept, to be read in their places.
     pub(in crate::setting) fn polynomial(
@@ -113,21 +147,26 @@ impl Written {
     }
 }
 
+/// What a coefficient with s in it is told.
+const WITH_VARIABLE: [&str; 2] = [
+    "a coefficient with s in it",
+    "[a, b, c] is a*s^2 + b*s + c: the place in the list is the power, or write one expression \
+     instead of the list",
+];
+
 /// Checks that `text` is a number of these names, as a coefficient is.
 pub(super) fn check(text: &str, names: &[&str]) -> Read<()> {
+    check_number(text, names, WITH_VARIABLE)
+}
+
+/// Checks that `text` is a number of these names; one with s in it is told `message` and `help`.
+fn check_number(text: &str, names: &[&str], [message, help]: [&str; 2]) -> Read<()> {
     let read = read_number(text, names, true).map(|_| ());
     read.map_err(|misread| {
         let variable = text.get(misread.place.clone()) == Some(VARIABLE);
         if !variable || !names_in(text).contains(&VARIABLE) {
             return misread;
         }
-        Misread::at(
-            misread.place,
-            format!("a coefficient with {VARIABLE} in it"),
-        )
-        .help(
-            "[a, b, c] is a*s^2 + b*s + c: the place in the list is the power, or write one \
-             expression instead of the list",
-        )
+        Misread::at(misread.place, message).help(help)
     })
 }

@@ -23,14 +23,17 @@ use winnow::token::{any, take_while};
 use super::part::{Misread, Part, Read, negated, power, product, quotient, sum};
 use super::tape::{Function, Op, Tape};
 use crate::text::nearest::did_you_mean;
+use crate::text::words;
 
 /// The longest expression, in bytes.
-pub(in crate::setting) const LONGEST: usize = 4096;
-/// The deepest nesting of parentheses and signs.
+pub(in crate::setting) const LONGEST: usize = 1 << 16;
+/// The deepest nesting of parentheses, signs and exponents.
 pub(in crate::setting) const DEEPEST: usize = 64;
 
 /// The name of the variable of polynomials.
 pub(in crate::setting) const VARIABLE: &str = "s";
+/// The name of the number π.
+pub(in crate::setting) const NUMBER_PI: &str = "pi";
 /// The functions of several numbers.
 const OF_SEVERAL: [(&str, Op); 2] = [("min", Op::Smaller), ("max", Op::Larger)];
 
@@ -47,22 +50,6 @@ fn function_of(name: &str) -> Option<(Op, bool)> {
     let of_several = OF_SEVERAL.iter().find(|(known, _)| *known == name);
     let one = of_one.map(|(_, function)| (Op::Apply(*function), false));
     one.or(of_several.map(|(_, op)| (*op, true)))
-}
-
-/// The names in a text that are not those of functions, each once.
-pub(in crate::setting) fn names_in(text: &str) -> Vec<&str> {
-    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let mut names = Vec::new();
-    for word in text.split(|c| !is_part(c)) {
-        let after = word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
-        let called = text[after..].trim_start().starts_with('(');
-        let begins = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-        let of_function = functions(true).any(|known| known == word);
-        if begins && !called && !of_function && !names.contains(&word) {
-            names.push(word);
-        }
-    }
-    names
 }
 
 /// The known names, and how deep the reader is in parentheses.
@@ -104,7 +91,8 @@ impl<'n> ParserError<Input<'n>> for Misread {
 fn descend(input: &mut Input) -> Read<()> {
     if input.state.depth == DEEPEST {
         let at = input.current_token_start();
-        let message = format!("more than {DEEPEST} signs and parentheses within one another");
+        let message =
+            format!("more than {DEEPEST} signs, exponents and parentheses within one another");
         return Err(Misread::at(at..at, message));
     }
     input.state.depth += 1;
@@ -135,7 +123,7 @@ fn operand(input: &mut Input) -> Read<Part> {
     multispace0.parse_next(input)?;
     match ahead(input) {
         (Some('0'..='9' | '.'), _) => number(input),
-        (Some('a'..='z' | 'A'..='Z' | '_'), _) => named(input),
+        (Some(c), _) if words::begins(c) || c == '_' => named(input),
         (Some('('), place) => {
             any.parse_next(input)?;
             descend(input)?;
@@ -148,10 +136,12 @@ fn operand(input: &mut Input) -> Read<Part> {
         (Some('+' | '-'), _) => Err(Misread::from_input(input)),
         (next, place) => {
             let expected = "expected a number, a name or `(`";
-            Err(Misread::at(
-                place,
-                format!("{expected}, found {}", found(next)),
-            ))
+            let message = format!("{expected}, found {}", found(next));
+            let misread = Misread::at(place, message);
+            Err(match next.and_then(words::greek_advice) {
+                Some(advice) => misread.help(advice),
+                None => misread,
+            })
         }
     }
 }
@@ -196,8 +186,7 @@ fn number(input: &mut Input) -> Read<Part> {
 
 fn named(input: &mut Input) -> Read<Part> {
     let start = input.current_token_start();
-    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let name: &str = take_while(1.., is_part).parse_next(input)?;
+    let name: &str = take_while(1.., words::belongs).parse_next(input)?;
     let place = start..start + name.len();
     let before = input.checkpoint();
     multispace0.parse_next(input)?;
@@ -213,9 +202,11 @@ fn named(input: &mut Input) -> Read<Part> {
         None => input.reset(&before),
     }
     let is_variable = variable == Some(name);
-    match names.iter().position(|known| *known == name) {
+    let is_pi = words::same(NUMBER_PI, name);
+    match names.iter().position(|known| words::same(known, name)) {
         Some(_) if called => Err(times_is_written(place)),
-        None if is_variable && called => Err(times_is_written(place)),
+        None if (is_variable || is_pi) && called => Err(times_is_written(place)),
+        None if is_pi => Ok(Part::of(Op::Pi, None, place)),
         Some(index) => Ok(Part::of(Op::Value(index as u8), None, place)),
         None if is_variable => Ok(Part::of(Op::Variable, Some(1), place)),
         None if called => {
@@ -341,7 +332,12 @@ fn operator<'n>(input: &mut Input<'n>) -> Read<Infix<Input<'n>, Part, Misread>> 
         }
         Some('*') => Ok(Infix::Left(7, |_, a, b| product(a, b))),
         Some('/') => Ok(Infix::Left(7, |_, a, b| quotient(a, b))),
-        Some('^') => Ok(Infix::Right(9, |_, a, b| power(a, b))),
+        Some('^') => {
+            descend(input)?;
+            Ok(Infix::Right(9, |input, base, exponent| {
+                power(base, ascend(input, exponent))
+            }))
+        }
         _ => {
             let message = format!("expected an operator, + - * / or ^, found {}", found(next));
             Err(Misread::at(place, message).help("a product is written with `*`"))

@@ -55,6 +55,8 @@ impl Function {
 pub(in crate::setting) enum Op {
     /// A literal number.
     Number(f64),
+    /// π.
+    Pi,
     /// The value of a name, by index.
     Value(u8),
     Add,
@@ -91,6 +93,12 @@ pub(in crate::setting) struct Tape {
     /// An upper bound on the degree of the polynomial.
     degree: usize,
 }
+
+/// π, and what is missing in its double.
+const PI: Ball = Ball {
+    value: std::f64::consts::PI,
+    error: 1.3e-16,
+};
 
 /// The stacks of an evaluation, for reuse.
 #[derive(Debug, Clone, Default)]
@@ -141,6 +149,7 @@ impl Stacks {
     fn apply(&mut self, op: Op, values: &[f64]) -> bool {
         match op {
             Op::Number(value) => self.numbers.push(Ball::exact(value)),
+            Op::Pi => self.numbers.push(PI),
             Op::Value(index) => self.numbers.push(Ball::exact(values[usize::from(index)])),
             Op::Add => self.two(Ball::plus),
             Op::Subtract => self.two(Ball::minus),

@@ -13,6 +13,7 @@ use crate::setting::limit_spec;
 use crate::setting::needs::{Stage, no_meaning, unmet};
 use crate::setting::parameter::{Group, Parameter};
 use crate::setting::search::Search;
+use crate::setting::system::SystemModel;
 use crate::setting::values::Setting;
 use crate::setting::vc_keys::VcKeys;
 use crate::text::{Shown, SpecError};
@@ -28,7 +29,7 @@ impl SweepFile<'_> {
             .check(optional.as_slice(), self.document.key("axes"))?;
         self.check_degrees()?;
         self.check_best()?;
-        self.check_sampled()?;
+        self.check_curves(fixed)?;
         self.check_law(fixed)?;
         self.check_needs(fixed, Stage::Model)?;
         self.check_nonlinear(fixed)
@@ -57,6 +58,7 @@ impl SweepFile<'_> {
     /// Checks a sweep of a system. Returns the parameters that are no axes.
     pub(super) fn check_system(&self, system: &GivenSystem) -> Result<Setting, SpecError> {
         self.check_degrees()?;
+        self.check_curves(&system.setting)?;
         system.check_delay(self.document.key("axes"))?;
         self.check_needs(&system.setting, Stage::Model)?;
         Ok(system.setting.clone())
@@ -101,8 +103,9 @@ impl SweepFile<'_> {
         }
     }
 
-    /// Checks that nothing is asked of a digital loop that needs every delay.
-    fn check_sampled(&self) -> Result<(), SpecError> {
+    /// Checks that no crossing curves are asked of a digital loop, which would need every delay,
+    /// and of systems of which none are known.
+    fn check_curves(&self, fixed: &Setting) -> Result<(), SpecError> {
         let asked = [
             ("boundaries", self.spec.boundaries == Some(true)),
             (
@@ -111,15 +114,25 @@ impl SweepFile<'_> {
             ),
         ];
         let found = asked.into_iter().find(|(_, asked)| *asked);
-        match found.filter(|_| self.spec.is_sampled()) {
-            Some((key, _)) => Err(SpecError {
-                span: self.document.key(key).cloned(),
-                ..SpecError::whole(format!("{key} needs every delay")).help(
-                    "with a sample time there are delays of whole samples alone: leave it out",
-                )
-            }),
-            None => Ok(()),
-        }
+        let Some((key, _)) = found else {
+            return Ok(());
+        };
+        let of_system = fixed.system();
+        let (message, help) = match of_system.and_then(SystemModel::without_curves) {
+            Some(of) => (
+                format!("{key}: of {of} no crossing curves are known"),
+                "counts, roots and delays of its cells are: leave it out",
+            ),
+            None if self.spec.is_sampled() => (
+                format!("{key} needs every delay"),
+                "with a sample time there are delays of whole samples alone: leave it out",
+            ),
+            None => return Ok(()),
+        };
+        Err(SpecError {
+            span: self.document.key(key).cloned(),
+            ..SpecError::whole(message).help(help)
+        })
     }
 
     /// Checks that the law is well posed in every cell: the largest μ0 against the smallest μ_S. A

@@ -3,9 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::forms::WrittenForm;
 use super::parameter::{OwnParameter, WIDEST};
-use super::{Expression, Form, SpeedAxis, SpeedUnit, SystemModel};
-use crate::setting::expression::{VARIABLE, Written, functions};
+use super::{Form, IGNORED_ROOTS, SpeedAxis, SpeedUnit, SystemModel};
+use crate::linear::general::MOST_DEGREE;
+use crate::setting::expression::{NUMBER_PI, VARIABLE, functions};
 use crate::setting::keys::names;
 use crate::setting::map_names;
 use crate::setting::parameter::Parameter;
@@ -15,15 +17,7 @@ use crate::setting::system_keys::{
 use crate::text::document::Document;
 use crate::text::nearest::did_you_mean;
 use crate::text::toml_reader::{Entry, SpecError, entries, parse};
-
-const POLYNOMIALS: [&str; 4] = ["P", "Q", "B", "A"];
-
-fn polynomial(written: &Written, names: &[&str]) -> Result<Expression, SpecError> {
-    Ok(Expression {
-        text: written.text.clone(),
-        tape: written.read_polynomial(names)?,
-    })
-}
+use crate::text::words;
 
 impl std::str::FromStr for SystemModel {
     type Err = SpecError;
@@ -55,53 +49,28 @@ impl SystemModel {
             .take("parameters", read_parameters)
             .unwrap_or_default();
         let speed_axis = document.take("speed_axis", read_speed_axis);
-        let polynomials = POLYNOMIALS
-            .map(|name| document.take(name, |entry| Written::polynomial(name, entry, whole)));
+        let ignored_roots = document.take(IGNORED_ROOTS, read_ignored).unwrap_or(0);
+        let written = WrittenForm::take(&mut document, whole);
         document.finish()?;
         check_speed_names(&parameters, speed_axis.as_ref())?;
         let names = parameters.iter().map(|(own, _)| &*own.name);
         let names: Vec<&str> = names.chain([Parameter::Tau.name()]).collect();
-        let missing = |message: &str| SpecError {
-            span: place.cloned(),
-            ..SpecError::whole(message).help(
-                "either P and Q, or the open loop B and the feedback A: expressions in s or \
-                     lists of coefficients",
-            )
-        };
-        let form = match &polynomials {
-            [Some(p), Some(q), None, None] => {
-                Form::Direct([polynomial(p, &names)?, polynomial(q, &names)?])
-            }
-            [None, None, Some(open), Some(gain)] => {
-                check_feedback_names(&parameters)?;
-                let (open, place) = (polynomial(open, &names)?, &gain.span);
-                let gain = polynomial(gain, &names)?;
-                check_degrees(&open, &gain, place)?;
-                Form::Feedback([open, gain])
-            }
-            [None, None, None, None] => return Err(missing("a system needs its polynomials")),
-            some => {
-                if let [one] = some.iter().flatten().collect::<Vec<_>>()[..] {
-                    return Err(missing(&format!("{} alone makes no system", one.name)));
-                }
-                let mut keys = document.keys().rev();
-                let last = keys.find(|(key, _)| POLYNOMIALS.contains(key));
-                return Err(SpecError {
-                    span: last.map(|(_, place)| place.clone()),
-                    ..missing("P and Q are one form, B and A another: not both")
-                });
-            }
-        };
+        let form = written.read(&names, &document, place)?;
+        if matches!(form, Form::Feedback(_)) {
+            check_feedback_names(&parameters)?;
+        }
+        check_names_of_form(&parameters, &written)?;
         let (parameters, places): (Vec<_>, Vec<_>) = parameters.into_iter().unzip();
         let model = Self {
             title: title.to_owned(),
             form,
+            ignored_roots,
             parameters,
             speed_axis,
         };
         for (own, place) in model.parameters.iter().zip(places) {
-            if !model.polynomials().any(|(_, of)| of.tape.uses(own.index)) {
-                let message = format!("{} stands in no polynomial: it has no effect", own.name);
+            if !model.tapes().any(|of| of.uses(own.index)) {
+                let message = format!("{} stands in no expression: it has no effect", own.name);
                 return Err(SpecError::at(place, message).help("leave it out"));
             }
         }
@@ -113,9 +82,14 @@ impl SystemModel {
 type PlacedParameter = (Arc<OwnParameter>, Range<usize>);
 
 fn read_parameters(table: &Entry) -> Result<Vec<PlacedParameter>, SpecError> {
-    let mut parameters = Vec::new();
+    let mut parameters: Vec<PlacedParameter> = Vec::new();
     for entry in table.table()? {
         check_name(&entry)?;
+        let before = parameters.iter().map(|(own, _)| &own.name);
+        if let Some(other) = before.into_iter().find(|name| words::same(name, entry.key)) {
+            let message = format!("{} and {other} are one name", entry.key);
+            return Err(SpecError::at(entry.key_span.clone(), message).help("leave one out"));
+        }
         if parameters.len() == MOST_PARAMETERS {
             let message = format!("more than {MOST_PARAMETERS} parameters");
             return Err(SpecError::at(entry.key_span.clone(), message));
@@ -144,6 +118,24 @@ fn check_feedback_names(parameters: &[PlacedParameter]) -> Result<(), SpecError>
     }
 }
 
+/// Refuses the names of the matrices of the form that is given.
+fn check_names_of_form(
+    parameters: &[PlacedParameter],
+    written: &WrittenForm,
+) -> Result<(), SpecError> {
+    let reserved = written.reserved();
+    let mut all = parameters.iter();
+    match all.find(|(own, _)| reserved.contains(&&*own.name)) {
+        Some((own, place)) => {
+            let name = &own.name;
+            let message = format!("{name} is reserved: the system has a matrix of that name");
+            let error = SpecError::at(place.clone(), message);
+            Err(error.help(format!("call it {name}_1, for example")))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Refuses the units of speeds as names where the delay can be given as a speed.
 fn check_speed_names(
     parameters: &[PlacedParameter],
@@ -161,34 +153,25 @@ fn check_speed_names(
     }
 }
 
-fn check_degrees(
-    open: &Expression,
-    gain: &Expression,
-    place: &Range<usize>,
-) -> Result<(), SpecError> {
-    let (m, n) = (gain.tape.degree(), open.tape.degree());
-    if m < n {
-        return Ok(());
-    }
-    let message = format!("A: its degree is {m} and that of B {n}: A must have the smaller one");
-    Err(SpecError::at(place.clone(), message).help("write the system as P and Q"))
-}
-
 /// Checks that a name is valid for a parameter.
 fn check_name(entry: &Entry) -> Result<(), SpecError> {
     let name = entry.key;
     let refuse = |message: String| Err(SpecError::at(entry.key_span.clone(), message));
-    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
-    if !begins || !name.chars().all(word) || name.len() > LONGEST_NAME {
+    let known = name.starts_with(words::begins) && name.chars().all(words::belongs);
+    if !known || name.chars().count() > LONGEST_NAME {
         let error = refuse(format!("`{name}` is no name of a parameter"));
-        return error.map_err(|e| e.help("a letter, then letters, digits and _, 40 at most"));
+        let greek = name.chars().find_map(words::greek_advice);
+        let rule = "a letter, then letters, digits and _, 40 at most; letters are ASCII or Greek";
+        return error.map_err(|e| e.help(greek.unwrap_or_else(|| rule.into())));
     }
-    let why = match name {
+    let why = match &*words::spelled(name) {
         VARIABLE => "it is the variable of the polynomials",
-        _ if name == Parameter::Tau.name() => "it is the delay, which every system has",
-        _ if functions(true).any(|known| known == name) => "it is a function",
-        _ if map_names::taken().any(|taken| taken == name) => "maps have a variable of that name",
+        NUMBER_PI => "it is the number pi",
+        name if name == Parameter::Tau.name() => "it is the delay, which every system has",
+        name if functions(true).any(|known| known == name) => "it is a function",
+        name if map_names::taken().any(|taken| taken == name) => {
+            "maps have a variable of that name"
+        }
         _ => return Ok(()),
     };
     let error = refuse(format!("{name} is reserved: {why}"));
@@ -198,8 +181,8 @@ fn check_name(entry: &Entry) -> Result<(), SpecError> {
 fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
     let mut own = OwnParameter {
         index: 0,
-        name: of.key.to_owned(),
-        long_name: of.key.to_owned(),
+        name: words::spelled(of.key).into_owned(),
+        long_name: words::spelled(of.key).into_owned(),
         default: 0.0,
         minimum: WIDEST[0],
         maximum: WIDEST[1],
@@ -254,6 +237,14 @@ fn read_unit<'t>(entry: &Entry<'t>) -> Result<&'t str, SpecError> {
         return Ok(unit);
     }
     Err(entry.error("expected a unit of 1 to 20 characters, such as \"N m-1\""))
+}
+
+/// The number of roots at 0 that do not count.
+fn read_ignored(entry: &Entry) -> Result<usize, SpecError> {
+    match usize::try_from(entry.whole()?) {
+        Ok(roots) if roots <= MOST_DEGREE => Ok(roots),
+        _ => Err(entry.error(format!("expected a whole number from 0 to {MOST_DEGREE}"))),
+    }
 }
 
 fn read_speed_axis(table: &Entry) -> Result<SpeedAxis, SpecError> {

@@ -12,6 +12,14 @@
 //! # with memory R and latency δ as parameters of every such system
 //! # B = "s^2 + b*s + 1"
 //! # A = "gain"
+//! # or matrices, x'(t) − E1 x'(t − tau) = A0 x(t) + A1 x(t − tau), E1 = 0 where it is left out
+//! # A0 = [[0, 1], ["-k", -0.1]]
+//! # A1 = [[0, 0], ["g", 0]]           # or feedback = { B, K, C } with A1 = B K C
+//! # or powers of the delay, D = p0 + p1 e^(−s tau) + p2 e^(−2 s tau)
+//! # D = ["s^2 + 1", "k*s", 0.1]
+//!
+//! # optional: so many roots at 0 at every delay come from the form and are no roots of the system
+//! ignore_roots_at_zero = 0
 //!
 //! [parameters]                            # a name for each
 //! zeta = { long_name = "damping ratio", default = 0.02, minimum = 0 }
@@ -24,27 +32,44 @@
 //! unit = "rpm"
 //! ```
 //!
-//! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
+//! - `expressed`: an expression as text and for evaluation
+//! - `file`: reads the file; `forms`: the forms of a system; `matrices`: matrices in it
+//! - `text`: writes it; [`shipped`]: systems that are part of the program
 //! - `parameter`: a parameter of a system; `speed`: the speed of which its delay is the period
 
+mod expressed;
 mod file;
+pub(super) mod forms;
+mod matrices;
 pub mod parameter;
 pub mod shipped;
 mod speed;
 mod text;
 
-use std::ops::Range;
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use expressed::Expression;
+use forms::MOST_POWERS;
+use matrices::{Entries, Matrices};
 use parameter::OwnParameter;
 
 pub(crate) use speed::NO_SPEED;
 pub use speed::{SpeedAxis, SpeedUnit, Turn};
 
-use crate::linear::general::System;
+use crate::linear::general::{OriginError, System};
+use crate::linear::line::Linear;
+use crate::linear::matrix::MatrixSystem;
 use crate::model::Channel;
 use crate::setting::expression::{Stacks, Tape};
 use crate::setting::no_answer::NoAnswer;
+
+/// The names of polynomials with powers of the delay.
+const POWERS: [&str; MOST_POWERS] = [
+    "D[0]", "D[1]", "D[2]", "D[3]", "D[4]", "D[5]", "D[6]", "D[7]", "D[8]",
+];
+/// The key of the number of roots that do not count.
+const IGNORED_ROOTS: &str = "ignore_roots_at_zero";
 
 /// A system whose parameters have no values yet.
 ///
@@ -72,25 +97,25 @@ pub struct SystemModel {
     /// Title for pictures and maps; may be empty.
     pub title: String,
     form: Form,
+    /// How many roots at 0, which it has at every delay, do not count.
+    ignored_roots: usize,
     /// Its own parameters, in the order of the file.
     pub parameters: Vec<Arc<OwnParameter>>,
     /// The speed of the rotation of which the delay is the period, if it is one.
     pub speed_axis: Option<SpeedAxis>,
 }
 
-/// Two polynomials, each as text and in the form for evaluation.
+/// What D is made of, each part as text and in the form for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
     /// P and Q.
     Direct([Expression; 2]),
     /// B and A.
     Feedback([Expression; 2]),
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Expression {
-    text: String,
-    tape: Tape,
+    /// A0 with A1, or with B, K and C.
+    Matrices(Box<Matrices>),
+    /// Σ p_k e^(−kλτ) of three or more.
+    Powers(Vec<Expression>),
 }
 
 /// The values on which a system depends, and scratch space for its evaluation.
@@ -124,20 +149,48 @@ impl SystemModel {
     #[must_use]
     pub(crate) fn depends_on_delay(&self) -> bool {
         let tau = self.parameters.len();
-        self.polynomials().any(|(_, of)| of.tape.uses(tau))
+        self.tapes().any(|of| of.uses(tau))
     }
 
-    /// The polynomials as written, with their names.
-    pub(crate) fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.polynomials().map(|(name, of)| (name, &*of.text))
+    /// What this system is where it has neither crossing curves nor best settings; none where it
+    /// has them.
+    #[must_use]
+    pub(crate) fn without_curves(&self) -> Option<&'static str> {
+        match self.form {
+            Form::Matrices(_) => Some("a system of matrices"),
+            Form::Powers(_) => Some("a system with powers of its delay"),
+            _ if self.ignored_roots > 0 => Some("a system with ignore_roots_at_zero"),
+            _ => None,
+        }
     }
 
+    /// The polynomials and matrices as written, with their names.
+    pub(crate) fn expressions(&self) -> Vec<(&'static str, Cow<'_, str>)> {
+        if let Form::Matrices(of) = &self.form {
+            let text = |of: &Entries| (of.name(), of.to_text(str::to_owned).into());
+            return of.each().map(text).collect();
+        }
+        let all = self.polynomials();
+        all.map(|(name, of)| (name, Cow::from(&of.text))).collect()
+    }
+
+    /// The polynomials, with their names.
     fn polynomials(&self) -> impl Iterator<Item = (&'static str, &Expression)> {
-        let (names, all) = match &self.form {
-            Form::Direct(all) => (["P", "Q"], all),
-            Form::Feedback(all) => (["B", "A"], all),
+        let (names, all): (&[_], &[_]) = match &self.form {
+            Form::Direct(all) => (&["P", "Q"], all),
+            Form::Feedback(all) => (&["B", "A"], all),
+            Form::Powers(all) => (&POWERS, all),
+            Form::Matrices(_) => (&[], &[]),
         };
-        names.into_iter().zip(all)
+        names.iter().copied().zip(all)
+    }
+
+    /// All expressions in it.
+    fn tapes(&self) -> Box<dyn Iterator<Item = &Tape> + '_> {
+        match &self.form {
+            Form::Matrices(of) => Box::new(of.each().flat_map(Entries::tapes)),
+            _ => Box::new(self.polynomials().map(|(_, of)| &of.tape)),
+        }
     }
 
     /// All parameters at their defaults, without delay, memory and latency.
@@ -149,19 +202,53 @@ impl SystemModel {
         }
     }
 
-    /// The system at a setting.
+    /// The linear model at a setting.
     ///
     /// # Errors
     /// Where an expression has no finite value, or the degree of A is not less than that of B.
-    pub fn at(&self, at: &mut Evaluation) -> Result<System, NoAnswer> {
+    pub fn at(&self, at: &mut Evaluation) -> Result<Linear, NoAnswer> {
         at.values.clone_from(&at.own);
         at.values.push(at.tau);
+        let found = match self.with_all_roots(at)? {
+            Linear::General(system) if self.ignored_roots > 0 => system,
+            found => return Ok(found),
+        };
+        let rest = found.without_roots_at_zero(self.ignored_roots);
+        let rest = rest.map(|rest| Linear::General(Box::new(rest)));
+        rest.map_err(|why| NoAnswer::Undefined {
+            polynomial: IGNORED_ROOTS,
+            what: match why {
+                OriginError::Fewer(0) => "D has no root at 0 at every delay here".into(),
+                OriginError::Fewer(n) => {
+                    format!("of the roots of D, {n} stays at 0 at every delay here, no more")
+                }
+                OriginError::Late => "with a latency, D(0) = 0 is not left out".into(),
+            },
+        })
+    }
+
+    /// The system of the expressions; the values are in `at`.
+    fn with_all_roots(&self, at: &mut Evaluation) -> Result<Linear, NoAnswer> {
         let (values, stacks) = (&at.values, &mut at.stacks);
-        match &self.form {
-            Form::Direct([p, q]) => Ok(System::direct(
-                p.at("P", values, stacks)?,
-                q.at("Q", values, stacks)?,
-            )),
+        let system = match &self.form {
+            Form::Matrices(of) => {
+                let system = of.at(values, stacks)?;
+                return Ok(Linear::Matrix(Box::new(system)));
+            }
+            Form::Powers(powers) => {
+                let each = POWERS.into_iter().zip(powers);
+                let powers = each.map(|(name, of)| {
+                    let found = of.at(name, values, stacks)?;
+                    Ok(found.coefficients().to_vec())
+                });
+                let powers = powers.collect::<Result<Vec<_>, NoAnswer>>()?;
+                let system = MatrixSystem::of_powers(&powers);
+                let system = system.map_err(|error| matrices::refused("D", &error))?;
+                return Ok(Linear::Matrix(Box::new(system)));
+            }
+            Form::Direct([p, q]) => {
+                System::direct(p.at("P", values, stacks)?, q.at("Q", values, stacks)?)
+            }
             Form::Feedback([open, gain]) => {
                 let (open, gain) = (open.at("B", values, stacks)?, gain.at("A", values, stacks)?);
                 if !gain.is_zero() && gain.degree() >= open.degree() {
@@ -172,26 +259,10 @@ impl SystemModel {
                         what,
                     });
                 }
-                Ok(System::feedback(open, gain, at.channel))
+                System::feedback(open, gain, at.channel)
             }
-        }
-    }
-}
-
-impl Expression {
-    fn at(
-        &self,
-        polynomial: &'static str,
-        values: &[f64],
-        stacks: &mut Stacks,
-    ) -> Result<crate::linear::general::Polynomial, NoAnswer> {
-        self.tape.at(values, stacks).map_err(|place: Range<usize>| {
-            let part = self.text.get(place).unwrap_or(&self.text);
-            NoAnswer::Undefined {
-                polynomial,
-                what: format!("`{part}` has no finite value at this setting"),
-            }
-        })
+        };
+        Ok(Linear::General(Box::new(system)))
     }
 }
 

@@ -4,7 +4,7 @@ use super::SystemModel;
 use crate::text::nearest::did_you_mean;
 
 /// All names, with their files.
-pub const SHIPPED: [(&str, &str); 8] = [
+pub const SHIPPED: [(&str, &str); 9] = [
     (
         "letter",
         include_str!("../../../sweeps/systems/letter.toml"),
@@ -30,6 +30,10 @@ pub const SHIPPED: [(&str, &str); 8] = [
     (
         "pyragas_focus",
         include_str!("../../../sweeps/systems/pyragas_focus.toml"),
+    ),
+    (
+        "ring_road",
+        include_str!("../../../sweeps/systems/ring_road.toml"),
     ),
 ];
 

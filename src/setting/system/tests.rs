@@ -48,6 +48,7 @@ fn their_parameters_are_those_of_the_tables() {
         ("pd", "damping stiffness k_p k_d k_a"),
         ("delayed_oscillator", "delta b"),
         ("pyragas_focus", "mu omega_0 gain"),
+        ("ring_road", "alpha b"),
     ] {
         assert_eq!(names(name).join(" "), parameters, "{name}");
     }
@@ -55,7 +56,7 @@ fn their_parameters_are_those_of_the_tables() {
 
 /// Texts, each with the part that the error points at and its message.
 const MISFITS: &[(&str, Option<&str>, &str)] = &[
-    ("", None, "a system needs its polynomials"),
+    ("", None, "a system needs its polynomials or matrices"),
     ("P = \"s\"", None, "P alone makes no system"),
     ("P = \"s\"\nA = \"1\"", Some("A"), "not both"),
     ("P = \"s\"\nQ = \"1\"\nB = \"1\"", Some("B"), "not both"),
@@ -144,6 +145,19 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
         Some("\"a b\""),
         "no name of a parameter",
     ),
+    ("[parameters]\npi = 1", Some("pi"), "it is the number pi"),
+    (
+        "[parameters]\n\"π\" = 1",
+        Some("\"π\""),
+        "it is the number pi",
+    ),
+    ("[parameters]\n\"τ\" = 1", Some("\"τ\""), "it is the delay"),
+    ("[parameters]\n\"Α\" = 1", Some("\"Α\""), "no name of a"),
+    (
+        "[parameters]\n\"\u{b5}\" = 1\n\"\u{3bc}\" = 1",
+        Some("\"\u{3bc}\""),
+        "are one name",
+    ),
     (
         "[parameters]\na = \"1\"",
         Some("\"1\""),
@@ -202,6 +216,123 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
     ),
 ];
 
+/// Those of matrices and of powers of the delay.
+const MISFITS_OF_MATRICES: &[(&str, Option<&str>, &str)] = &[
+    ("A0 = [[1]]", None, "A0 alone makes no system"),
+    ("A1 = [[1]]", None, "A1 alone makes no system"),
+    ("A0 = [[1]]\nE1 = [[1]]", None, "A0 and E1 alone make"),
+    ("P = \"s\"\nQ = \"1\"\nA0 = [[1]]", Some("A0"), "not both"),
+    ("A0 = [[1]]\nD = [1, 2]", Some("D"), "not both"),
+    (
+        "A0 = [[1]]\nA1 = [[1]]\nfeedback = { B = [[1]], C = [[1]] }",
+        Some("feedback"),
+        "not both",
+    ),
+    ("A0 = 3\nA1 = [[1]]", Some("3"), "expected an array of rows"),
+    (
+        "A0 = []\nA1 = [[1]]",
+        Some("[]"),
+        "an empty list is no matrix",
+    ),
+    (
+        "A0 = [[]]\nA1 = [[1]]",
+        Some("[]"),
+        "a row has 1 to 32 entries",
+    ),
+    (
+        "A0 = [1, 2]\nA1 = [[1]]",
+        Some("1"),
+        "expected a row in brackets",
+    ),
+    (
+        "A0 = [[1, 2], [3]]\nA1 = [[1]]",
+        Some("[3]"),
+        "1 entries, the first 2",
+    ),
+    (
+        "A0 = [[1, 2]]\nA1 = [[1]]",
+        Some("[[1, 2]]"),
+        "needs 1 row of 1 entry",
+    ),
+    (
+        "A0 = [[1]]\nA1 = [[1, 2], [3, 4]]",
+        Some("[[1, 2], [3, 4]]"),
+        "A1 has 2 rows of 2 entries",
+    ),
+    (
+        "A0 = [[1]]\nA1 = [[1]]\nE1 = [[1, 2]]",
+        Some("[[1, 2]]"),
+        "E1 has 1 row of 2",
+    ),
+    (
+        "A0 = [[1, 2], [3, 4]]\nfeedback = { B = [[1]], C = [[1, 2]] }",
+        Some("[[1]]"),
+        "B has 1 row of 1",
+    ),
+    (
+        "A0 = [[1]]\nfeedback = { B = [[1]], C = [[1], [2]] }",
+        Some("[[1], [2]]"),
+        "C has 2 rows of 1",
+    ),
+    (
+        "A0 = [[1]]\nfeedback = { B = [[1]], K = [[1], [2]], C = [[1]] }",
+        Some("[[1], [2]]"),
+        "K has 2 rows",
+    ),
+    (
+        "A0 = [[1]]\nfeedback = { B = [[1]] }",
+        Some("{ B = [[1]] }"),
+        "C is missing",
+    ),
+    (
+        "A0 = [[1]]\nfeedback = { B = [[1]], D = [[1]] }",
+        Some("D"),
+        "unknown key `feedback.D`",
+    ),
+    (
+        "A0 = [[\"s + 1\"]]\nA1 = [[1]]",
+        Some("s"),
+        "A0[0][0]: an entry with s in it",
+    ),
+    (
+        "A0 = [[\"k\"]]\nA1 = [[1]]",
+        Some("k"),
+        "A0[0][0]: unknown name `k`",
+    ),
+    (
+        "A0 = [[true]]\nA1 = [[1]]",
+        Some("true"),
+        "expected a number or a string",
+    ),
+    (
+        "A0 = [[1]]\nA1 = [[1]]\nparameters.k = 1",
+        Some("k"),
+        "stands in no expression",
+    ),
+    (
+        "A0 = [[\"A1\"]]\nA1 = [[1]]\nparameters.A1 = 1",
+        Some("A1"),
+        "has a matrix of that name",
+    ),
+    (
+        "A0 = [[1]]\nA1 = [[1]]\nignore_roots_at_zero = 1",
+        Some("ignore_roots_at_zero"),
+        "is for P and Q",
+    ),
+    ("D = [\"s\"]", Some("[\"s\"]"), "2 to 9 polynomials, not 1"),
+    (
+        "D = \"s\"",
+        Some("\"s\""),
+        "expected an array of polynomials",
+    ),
+    (
+        "D = [\"s\", \"s^2\", 1]",
+        Some("\"s^2\""),
+        "D[1]: its degree is 2 and that of D[0] 1",
+    ),
+    ("D = [\"s\", \"x\", 1]", Some("x"), "D[1]: unknown name `x`"),
+];
+
 /// Coefficients, the highest power first, are the expression that stands beside them.
 #[test]
 fn a_list_of_coefficients_is_the_expression_that_it_says() {
@@ -230,7 +361,7 @@ fn a_list_of_coefficients_is_the_expression_that_it_says() {
         ),
     ] {
         let (model, same) = (read(list, q), read(&format!("\"{expression}\""), q));
-        assert_eq!(model.expressions().next(), Some(("P", expression)));
+        assert_eq!(model.expressions()[0], ("P", expression.into()));
         assert_eq!(model, same, "{list}");
         assert_eq!(model.to_toml().parse(), Ok(model.clone()), "{list}");
     }
@@ -245,11 +376,71 @@ fn a_list_of_coefficients_is_the_expression_that_it_says() {
     assert_eq!(error, "P: `1/zeta` has no finite value at this setting");
 }
 
+/// What a matrix may be at most, and what is read back from what is written.
+#[test]
+fn matrices_are_written_as_they_are_read() {
+    let large = |n: usize| {
+        format!(
+            "[{}]",
+            vec![format!("[1{}]", ", 0".repeat(n - 1)); n].join(", ")
+        )
+    };
+    let of_size = |n: usize| format!("A0 = {0}\nA1 = {0}", large(n)).parse::<SystemModel>();
+    assert!(of_size(32).is_ok());
+    let error = of_size(33).unwrap_err();
+    assert!(error.message.contains("33 rows: at most 32"), "{error:?}");
+    for form in [
+        "A0 = [[\"-k\", 1e-300], [0x10, -0.1]]\nA1 = [[0, 0], [\"k*tau\", 3]]\n\
+            E1 = [[0, 0], [0, 0.5]]",
+        "A0 = [[1]]\nfeedback = { B = [[1, 2]], K = [[\"k\"], [2]], C = [[3]] }",
+        "A0 = [[1]]\nfeedback = { B = [[\"k\", 2]], C = [[3], [4]] }",
+        "D = [\"s^2\", [1, \"k\"], -0.25, 0]",
+        "D = [\"s\", \"k\"]",
+    ] {
+        let text = format!("{form}\n[parameters]\nk = 2\n");
+        let model: SystemModel = text.parse().unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        assert_eq!(
+            model.to_toml().parse(),
+            Ok(model.clone()),
+            "{}",
+            model.to_toml()
+        );
+        assert_eq!(model.depends_on_delay(), form.contains("tau"));
+        let sweep = format!("system = {}\n", model.to_inline_table());
+        let document = crate::text::toml_reader::parse(&sweep).unwrap();
+        let entries = crate::text::toml_reader::entries(document.get_ref(), "");
+        assert_eq!(SystemModel::of_table(&entries[0], &sweep), Ok(model));
+    }
+}
+
+/// Greek names are those of the file, in any form of their letters.
+#[test]
+fn greek_names_are_written_in_quotes_and_found_in_every_form() {
+    let text = "P = \"s^2 + 2*ζ*ω_0*s + ω_0^2 + \u{b5}\"\nQ = \"-\u{3bc}*cos(2*pi*ζ)\"\n\
+        [parameters]\n\"ζ\" = 0.05\n\"ω_0\" = 2\n\"\u{b5}\" = { default = 0.1 }\n";
+    let model: SystemModel = text.parse().unwrap();
+    let names: Vec<&str> = model.parameters.iter().map(|own| &*own.name).collect();
+    assert_eq!(names, ["ζ", "ω_0", "\u{3bc}"]);
+    assert_eq!(model.to_toml().parse(), Ok(model.clone()));
+    let named = |name: &str| model.quantity(name).map(|of| of.name().to_owned());
+    assert_eq!(named("\u{b5}").as_deref(), Some("\u{3bc}"));
+    assert_eq!(named("τ").as_deref(), Some("tau"));
+    assert!(!model.depends_on_delay() && named("mu").is_none());
+    let bare = "P = \"s\"\nQ = \"1\"\n[parameters]\nω = 1\n";
+    let error = bare.parse::<SystemModel>().unwrap_err();
+    let help = error.help.unwrap_or_default();
+    assert!(
+        help.contains("in quotes: \"ω\""),
+        "{} {help}",
+        error.message
+    );
+}
+
 /// What an element may be by itself can be too deep or too long with the others.
 #[test]
 fn lists_that_are_too_deep_or_too_long_are_refused_as_a_whole() {
     let deep = format!("\"{}1+1{}\", 2", "(".repeat(64), ")".repeat(64));
-    let long = format!("\"1{}\", ", "+1".repeat(700)).repeat(3) + "1";
+    let long = format!("\"1{}\", ", "+1".repeat(11_000)).repeat(3) + "1";
     for list in [deep, long] {
         let text = format!("P = [{list}]\nQ = [1]");
         let error = text.parse::<SystemModel>().expect_err(&text);
@@ -281,7 +472,7 @@ proptest::proptest! {
 
 #[test]
 fn what_does_not_fit_is_told_in_its_place() {
-    for (text, part, says) in MISFITS.iter().copied() {
+    for (text, part, says) in MISFITS.iter().chain(MISFITS_OF_MATRICES).copied() {
         let error = text.parse::<SystemModel>().expect_err(text);
         let found = error.span.clone().map(|span| &text[span]);
         assert_eq!(found, part, "{text}: {error:?}");

@@ -1,8 +1,8 @@
 //! A system as text: a file of its own, or a table on one line.
 
 use super::parameter::OwnParameter;
-use super::{SpeedAxis, SystemModel};
-use crate::text::toml_reader::quoted;
+use super::{Form, IGNORED_ROOTS, SpeedAxis, SystemModel};
+use crate::text::toml_reader::{key, quoted};
 
 impl OwnParameter {
     /// Everything but the name, as an inline table.
@@ -30,7 +30,7 @@ impl SystemModel {
     #[must_use]
     pub(crate) fn in_one_line(&self) -> String {
         let title = Some(&self.title).filter(|title| !title.is_empty());
-        let texts = self.expressions().map(|(name, text)| {
+        let texts = self.expressions().into_iter().map(|(name, text)| {
             let words: Vec<&str> = text.split_whitespace().collect();
             format!("{name} = {}", words.join(" "))
         });
@@ -44,7 +44,20 @@ impl SystemModel {
         if !self.title.is_empty() {
             pairs.push(("title", quoted(&self.title)));
         }
-        pairs.extend(self.expressions().map(|(name, text)| (name, quoted(text))));
+        match &self.form {
+            Form::Matrices(of) => pairs.extend(of.pairs()),
+            Form::Powers(powers) => {
+                let each: Vec<String> = powers.iter().map(|of| quoted(&of.text)).collect();
+                pairs.push(("D", format!("[{}]", each.join(", "))));
+            }
+            _ => pairs.extend(
+                self.polynomials()
+                    .map(|(name, of)| (name, quoted(&of.text))),
+            ),
+        }
+        if self.ignored_roots > 0 {
+            pairs.push((IGNORED_ROOTS, self.ignored_roots.to_string()));
+        }
         if let Some(speed) = &self.speed_axis {
             pairs.push(("speed_axis", speed.to_toml()));
         }
@@ -62,7 +75,7 @@ impl SystemModel {
             text += "\n[parameters]\n";
         }
         for own in &self.parameters {
-            text += &format!("{} = {}\n", own.name, own.to_toml());
+            text += &format!("{} = {}\n", key(&own.name), own.to_toml());
         }
         text
     }
@@ -73,7 +86,7 @@ impl SystemModel {
         let mut pairs = self.pairs();
         let own = self.parameters.iter();
         let own: Vec<String> = own
-            .map(|own| format!("{} = {}", own.name, own.to_toml()))
+            .map(|own| format!("{} = {}", key(&own.name), own.to_toml()))
             .collect();
         if !own.is_empty() {
             pairs.push(("parameters", format!("{{ {} }}", own.join(", "))));

@@ -1,5 +1,7 @@
 //! One thread's work: the cells of a tile, and the curves and best settings of planes.
 //!
+//! - `any_columns`: the cells of a line of a model without a kernel of its own, such as a digital
+//!   loop: counts, margins in delay, roots
 //! - `any_plane`: curves of a plane of any two parameters of any system
 //! - `basin_columns`: fields from motions with many starts
 //! - `best_planes`: best settings of a whole sweep, plane by plane
@@ -14,13 +16,13 @@
 //! - `lines`: the linear models of lines, without computing again what does not change
 //! - `margin_columns`: the fields of margins: how far a cell is from the boundary of stability
 //! - `root_columns`: fields from roots: from dimensionless roots to physical values
-//! - `sampled_columns`: the cells of a line of a digital loop: counts, margins in delay, roots
 //! - `second_look`: checks of a cell by methods that did not compute it
 //! - `slip_columns`: fields from motions: every cell's block followed to its outcome
 //! - `vc_columns`: fields of the critical velocity, for every cell, and the sample that is
 //!   recomputed
 //! - `worker`: one thread's work: the cells of a tile, line by line
 
+mod any_columns;
 mod any_plane;
 mod basin_columns;
 pub mod best_planes;
@@ -34,7 +36,6 @@ mod line;
 mod lines;
 mod margin_columns;
 pub(crate) mod root_columns;
-mod sampled_columns;
 pub mod second_look;
 mod slip_columns;
 mod vc_columns;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::any_columns::{self, AnyCells};
 use super::buffers::{FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
 use super::families::FieldFamily;
 use super::general_columns::{GeneralColumns, GeneralLine};
@@ -10,11 +11,9 @@ use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
 use super::lines::Lines;
 use super::root_columns::RootColumns;
-use super::sampled_columns::{self, SampledCells};
 use crate::linear::general::System;
 use crate::linear::line::Linear;
 use crate::linear::row::Delays;
-use crate::linear::sampled::SampledLoop;
 use crate::linear::status::OUTSIDE_MODEL;
 use crate::model::Groups;
 use crate::model::stop::Stop;
@@ -134,8 +133,8 @@ impl<'p> Worker<'p> {
                     self.fill_general(&system, time_unit, at, stop);
                     Some(false)
                 }
-                Ok((Linear::Sampled(of), time_unit)) => {
-                    self.fill_sampled(of, time_unit, at, stop);
+                Ok((of, time_unit)) => {
+                    self.fill_any((&of, time_unit), None, at, stop);
                     Some(false)
                 }
                 Err(_) => return self.refuse_line(at),
@@ -194,18 +193,24 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// Computes the cells of a line of a digital loop.
-    fn fill_sampled(&mut self, of: SampledLoop, time_unit: f64, at: usize, stop: &Stop) {
-        let cells = SampledCells {
+    /// Computes the cells of a line of a model without a kernel of its own, or of `one` delay.
+    fn fill_any(
+        &mut self,
+        (of, time_unit): (&Linear, f64),
+        one: Option<&Delays>,
+        at: usize,
+        stop: &Stop,
+    ) {
+        let cells = AnyCells {
             of,
             time_unit,
-            delays: self.delays.values(),
+            delays: one.unwrap_or(&self.delays).values(),
             tolerance: self.plan.spec.tolerance,
             places: self.places(at),
             fields: &self.plan.spec.fields,
             stop,
         };
-        sampled_columns::fill(&cells, &mut self.buffers);
+        any_columns::fill(&cells, &mut self.buffers);
         self.unflagged = false;
     }
 
@@ -216,9 +221,16 @@ impl<'p> Worker<'p> {
             one.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
             let model = self.lines.model();
-            let Ok((Linear::General(system), time_unit)) = model else {
-                self.refuse(place, 1);
-                continue;
+            let (system, time_unit) = match model {
+                Ok((Linear::General(system), time_unit)) => (system, time_unit),
+                Ok((of, time_unit)) => {
+                    self.fill_any((&of, time_unit), Some(one), place, stop);
+                    continue;
+                }
+                Err(_) => {
+                    self.refuse(place, 1);
+                    continue;
+                }
             };
             let line = GeneralLine {
                 system: &system,

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::setting::axis::plane_of_curves;
 use crate::setting::parameter::Parameter;
 use crate::setting::spec::SweepSpec;
+use crate::setting::system::SystemModel;
 
 /// The most planes whose crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
@@ -22,6 +23,8 @@ pub enum NoBoundaries {
     Unwanted,
     /// Of a digital loop none are known: it has delays of whole samples alone.
     Sampled,
+    /// Of such a system none are known.
+    OfSystem(&'static str),
     /// They are not asked for in planes without the delay.
     NoDelay,
     /// They are not asked for in so many planes.
@@ -42,6 +45,7 @@ impl fmt::Display for NoBoundaries {
             Self::NoPlane => f.write_str("fewer than two of its axes matter for linear stability"),
             Self::Unwanted => f.write_str("the sweep has boundaries = false"),
             Self::Sampled => f.write_str("a digital loop has delays of whole samples alone"),
+            Self::OfSystem(what) => write!(f, "of {what} none are known"),
             Self::NoDelay => write!(f, "between two axes without the delay {ONLY_ASKED}"),
             Self::TooMany { planes, most } => {
                 write!(f, "in {planes} planes, more than {most}, {ONLY_ASKED}")
@@ -69,6 +73,9 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
     let (p, q) = plane_of_curves(&spec.axes).ok_or(NoBoundaries::NoPlane)?;
     if spec.is_sampled() {
         return Err(NoBoundaries::Sampled);
+    }
+    if let Some(of) = spec.fixed.system().and_then(SystemModel::without_curves) {
+        return Err(NoBoundaries::OfSystem(of));
     }
     let outer = spec.axes.iter().enumerate();
     let outer = outer.filter(|&(i, _)| i != p && i != q);

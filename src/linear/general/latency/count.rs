@@ -263,6 +263,7 @@ impl RootCounter {
         Some(Turning {
             without_turns: without_turns.ok()?,
             turns,
+            at_origin: None,
         })
     }
 

@@ -1,12 +1,12 @@
-//! The cells of a line of a digital loop: counts, margins in delay, roots.
+//! The cells of a line of a model without a kernel of its own, by what its `Line` and its `Roots`
+//! say: counts, margins in delay, roots.
 
-use super::buffers::TileBuffers;
+use super::buffers::{N_UNSTABLE_FILL, TileBuffers};
 use super::line::Places;
 use super::root_columns::relaxation_time;
 use crate::linear::MarginalTolerance;
-use crate::linear::general::Spectrum;
-use crate::linear::line::Line;
-use crate::linear::sampled::{SampledLine, SampledLoop, SampledRoots};
+use crate::linear::general::{Reason, Spectrum};
+use crate::linear::line::{Line, Linear};
 use crate::linear::status::{
     CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED, OUTSIDE_MODEL, SATURATED,
 };
@@ -16,8 +16,8 @@ use crate::setting::field::Field;
 use crate::setting::source::{OfLinear, OfRoots, Source};
 
 /// A line of cells, or a part of it.
-pub(super) struct SampledCells<'a> {
-    pub of: SampledLoop,
+pub(super) struct AnyCells<'a> {
+    pub of: &'a Linear,
     /// √(M/κ).
     pub time_unit: f64,
     pub delays: &'a [f64],
@@ -29,23 +29,33 @@ pub(super) struct SampledCells<'a> {
     pub stop: &'a Stop,
 }
 
-/// Fills the cells of a line. Delays that are no multiples of the sample time are outside the
-/// model.
-pub(super) fn fill(cells: &SampledCells, buffers: &mut TileBuffers) {
-    let line = cells.of.line(cells.time_unit);
+/// Fills the cells of a line. Delays of a digital loop that are no multiples of the sample time are
+/// outside the model.
+pub(super) fn fill(cells: &AnyCells, buffers: &mut TileBuffers) {
+    let roots = cells.of.roots(cells.stop);
+    let line = roots.line(cells.time_unit);
     let wanted = cells.fields.iter().map(|field| field.roots_needed()).max();
     let wanted = wanted.unwrap_or(0);
-    let roots = SampledRoots::new(cells.of);
     for (i, &tau) in cells.delays.iter().enumerate() {
         let place = cells.places.of(i);
-        let status = count(cells, &line, (tau, place), buffers);
+        let status = count(cells, &*line, (tau, place), buffers);
         buffers.status[place] = status;
         if status & OUTSIDE_MODEL != 0 {
             buffers.put(place, |_| Some(f64::NAN));
             continue;
         }
-        fill_line(&line, (tau, place), buffers);
-        if wanted > 0 && !cells.stop.is_set() {
+        fill_line(&*line, (tau, place), buffers);
+        let essential = roots.essential_abscissa(tau / cells.time_unit) / cells.time_unit;
+        buffers.put(place, |field| match field.source() {
+            Source::Linear(OfLinear::EssentialAbscissa) => Some(essential),
+            _ => None,
+        });
+        if line.reason() == Some(Reason::Infinite) && tau > 0.0 {
+            buffers.put(place, |field| match field.source() {
+                Source::Roots(_) => Some(f64::NAN),
+                _ => None,
+            });
+        } else if wanted > 0 && !cells.stop.is_set() {
             let counted = line.count(tau, MarginalTolerance::default());
             let found = roots.counted(tau / cells.time_unit, wanted, counted);
             fill_roots(cells, (&found, wanted), place, buffers);
@@ -55,19 +65,19 @@ pub(super) fn fill(cells: &SampledCells, buffers: &mut TileBuffers) {
 
 /// Counts the unstable roots of a cell; its status.
 fn count(
-    cells: &SampledCells,
-    line: &SampledLine,
+    cells: &AnyCells,
+    line: &dyn Line,
     (tau, place): (f64, usize),
     buffers: &mut TileBuffers,
 ) -> u8 {
     let Some(count) = line.count(tau, cells.tolerance) else {
         if let Some(n) = &mut buffers.n_unstable {
-            n[place] = super::buffers::N_UNSTABLE_FILL;
+            n[place] = N_UNSTABLE_FILL;
         }
-        return if line.delays_known() {
-            OUTSIDE_MODEL
-        } else {
-            NOT_CONVERGED
+        return match line.reason() {
+            Some(Reason::Infinite) => SATURATED,
+            _ if line.delays_known() => OUTSIDE_MODEL,
+            _ => NOT_CONVERGED,
         };
     };
     let mut status = if count.marginal { MARGINAL } else { 0 };
@@ -82,24 +92,17 @@ fn count(
 }
 
 /// Fills what is known of the line.
-fn fill_line(line: &SampledLine, (tau, place): (f64, usize), buffers: &mut TileBuffers) {
+fn fill_line(line: &dyn Line, (tau, place): (f64, usize), buffers: &mut TileBuffers) {
     let mut unknown = false;
-    for column in &mut buffers.columns {
-        match column.field.source() {
-            Source::Line if column.field == Field::DelayMargin => {
-                let margin = line.margin(tau);
-                unknown |= margin.is_nan();
-                column.cells[place] = margin;
-            }
-            Source::Linear(OfLinear::EssentialAbscissa) => {
-                column.cells[place] = f64::NEG_INFINITY;
-            }
-            _ => {}
-        }
+    let mut columns = buffers.columns.iter_mut();
+    if let Some(column) = columns.find(|column| column.field == Field::DelayMargin) {
+        let margin = line.delay_margin(tau);
+        unknown |= margin.is_nan();
+        column.cells[place] = margin;
     }
     for column in &mut buffers.kinds {
         if matches!(column.field.source(), Source::Linear(OfLinear::Reason)) {
-            column.cells[place] = 0;
+            column.cells[place] = line.reason().map_or(0, Reason::number);
         }
     }
     if unknown {
@@ -109,14 +112,23 @@ fn fill_line(line: &SampledLine, (tau, place): (f64, usize), buffers: &mut TileB
 
 /// Fills the fields of roots, and adds to the status what they say.
 fn fill_roots(
-    cells: &SampledCells,
+    cells: &AnyCells,
     (found, wanted): (&Spectrum, usize),
     place: usize,
     buffers: &mut TileBuffers,
 ) {
     let unit = cells.time_unit;
-    let missing = found.missing.is_some() || found.roots.is_empty();
-    let beyond = if missing { f64::NAN } else { f64::NEG_INFINITY };
+    let sample_time = match cells.of {
+        Linear::Sampled(of) => of.sample_time,
+        _ => f64::NAN,
+    };
+    let accumulate = found.reason == Some(Reason::NoRightmostRoot);
+    let missing = !accumulate && (found.missing.is_some() || found.roots.is_empty());
+    let beyond = if missing || accumulate {
+        f64::NAN
+    } else {
+        f64::NEG_INFINITY
+    };
     let root = |rank: usize| found.roots.get(rank).map(|root| root.lambda / unit);
     let abscissa = found.abscissa / unit;
     for column in &mut buffers.columns {
@@ -124,14 +136,22 @@ fn fill_roots(
             continue;
         };
         column.cells[place] = match of {
+            OfRoots::RealPart(0) => abscissa,
             OfRoots::RealPart(rank) => root(rank).map_or(beyond, |root| root.re),
             OfRoots::Frequency(rank) => root(rank).map_or(f64::NAN, |root| root.im),
             OfRoots::RelaxationTime if abscissa.is_nan() => f64::NAN,
             OfRoots::RelaxationTime => relaxation_time(abscissa),
-            OfRoots::SpectralRadius => exp(found.abscissa * cells.of.sample_time),
+            OfRoots::SpectralRadius => exp(found.abscissa * sample_time),
             OfRoots::CertificateMargin => found.margin,
             OfRoots::Derivative(_) => f64::NAN,
         };
+    }
+    if accumulate {
+        for column in &mut buffers.kinds {
+            if matches!(column.field.source(), Source::Linear(OfLinear::Reason)) {
+                column.cells[place] = Reason::NoRightmostRoot.number();
+            }
+        }
     }
     buffers.status[place] |= match found {
         _ if found.abscissa.is_nan() || found.roots.len() < wanted && missing => NOT_CONVERGED,
