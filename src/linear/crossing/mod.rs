@@ -50,6 +50,15 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// The direction of a sign: what is neither −1 nor 1 is a touch.
+    pub(super) const fn of_sign(sign: i8) -> Self {
+        match sign {
+            1 => Self::Right,
+            -1 => Self::Left,
+            _ => Self::Touch,
+        }
+    }
+
     /// −1 to the left, 0 where the pair touches the axis, 1 to the right.
     #[must_use]
     pub const fn sign(self) -> i8 {

@@ -218,11 +218,7 @@ impl DelayLine {
 
     /// Adds the crossing at `switch`, `phase` being the argument of −P Q* there.
     fn add(&mut self, switch: &Switch, phase: Option<Angle>) -> Crossing {
-        let direction = match switch.sign {
-            1 => Direction::Right,
-            -1 => Direction::Left,
-            _ => Direction::Touch,
-        };
+        let direction = Direction::of_sign(switch.sign);
         let (theta, error) = if let Some(angle) = phase {
             // θ = arg(−Q/P) = −arg(−P Q*).
             (turned(-angle.value), angle.error)

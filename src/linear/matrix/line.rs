@@ -122,11 +122,7 @@ impl MatrixSystem {
 }
 
 fn crossing(of: &Junction) -> Crossing {
-    let direction = match of.sign {
-        1 => Direction::Right,
-        -1 => Direction::Left,
-        _ => Direction::Touch,
-    };
+    let direction = Direction::of_sign(of.sign);
     Crossing::with_errors(
         of.omega,
         of.omega_error,

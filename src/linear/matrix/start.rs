@@ -17,7 +17,7 @@ const UNCERTAIN: f64 = 16.0;
 /// A delay factor on the unit circle that is neither 1 nor a root of unity of low order.
 const ELSEWHERE: Complex64 = Complex64::new(0.540_302_305_868_139_8, -0.841_470_984_807_896_5);
 
-/// The roots on the imaginary axis without delay.
+/// The roots without delay: those right of the imaginary axis, and those on it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Start {
     /// Roots right of the axis.

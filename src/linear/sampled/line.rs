@@ -113,11 +113,7 @@ impl SampledLoop {
     }
 
     fn crossing(&self, junction: &Junction) -> Crossing {
-        let direction = match junction.sign {
-            1 => Direction::Right,
-            -1 => Direction::Left,
-            _ => Direction::Touch,
-        };
+        let direction = Direction::of_sign(junction.sign);
         Crossing::with_errors(
             junction.angle / self.sample_time,
             junction.angle_error / self.sample_time,
