@@ -15,8 +15,11 @@ const POLYNOMIAL: &str = "an expression in s, or a list of coefficients, the hig
 const MATRIX: &str =
     "an array of rows, each an array of numbers and expressions without s; at most 32 rows";
 
+const TRANSFER: &str = "an expression in s, which may divide, { num, den } with each as P is, or \
+    an array of these, which is their product";
+
 /// The keys of a system.
-pub(crate) const SYSTEM: [Key; 13] = [
+pub(crate) const SYSTEM: [Key; 17] = [
     key(
         "title",
         "one line of at most 200 characters",
@@ -77,6 +80,31 @@ pub(crate) const SYSTEM: [Key; 13] = [
         "none, beside other forms",
         "powers of the delay, D = p0 + p1 exp(-s tau) + p2 exp(-2 s tau) + ...; none has a higher \
          degree than p0",
+    ),
+    key(
+        "plant",
+        TRANSFER,
+        "none, beside other forms",
+        "a plant with negative feedback by its controller, delayed by tau: D = den + num exp(-s \
+         tau) of both; nothing is cancelled",
+    ),
+    key(
+        "controller",
+        TRANSFER,
+        "1, beside pid",
+        "what acts on the plant",
+    ),
+    key(
+        "pid",
+        "{ k_p, k_i, k_d, t_f }, each a number or an expression without s",
+        "none, beside controller",
+        "the controller k_p + k_i/s + k_d s/(t_f s + 1); what is left out is 0",
+    ),
+    key(
+        "delay",
+        "\"tau\"",
+        "\"tau\"",
+        "that the loop has the delay; it stands here or in one block",
     ),
     key(
         "ignore_roots_at_zero",
@@ -150,7 +178,7 @@ pub(crate) fn limits() -> [(&'static str, String); 9] {
         ),
         (
             "whole exponents that are written out",
-            format!("from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}; of s from 0 on"),
+            format!("from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}"),
         ),
         (
             "degree of a polynomial in s",

@@ -288,7 +288,8 @@ fn system_files(page: &mut String) {
     paragraph(
         page,
         "A file, or the table `system` of a sweep file, names a system with one delay by its \
-         characteristic function D(s), by P and Q, or B and A, or D; or by its matrices.",
+         characteristic function D(s), by P and Q, or B and A, or D; by its matrices; or by \
+         plant and controller.",
     );
     heading(page, 2, "Keys of a system");
     keys_of(page, &system_keys::SYSTEM);
@@ -313,7 +314,8 @@ fn system_files(page: &mut String) {
     paragraph(
         page,
         "Expressions have numbers, names of parameters, `tau` (or `τ`), `+ - * / ^`, parentheses \
-         and functions; divisors, exponents and arguments of functions are without s.",
+         and functions; exponents and arguments of functions are without s, and divisors in \
+         matrices and gains.",
     );
     let limits = system_keys::limits();
     let rows = limits.map(|(of, limit)| [of.to_owned(), limit]);

@@ -95,7 +95,7 @@ impl System {
 
     /// P and Q, or B and A with latency, where only these have finitely many zeros; the rest of D
     /// depends on λ by exponentials alone.
-    pub(super) fn polynomials(&self) -> [&Polynomial; 2] {
+    pub(crate) fn polynomials(&self) -> [&Polynomial; 2] {
         match &self.composition {
             Composition::Late(feedback) => [&feedback.open, &feedback.gain],
             _ => [&self.p, &self.q],

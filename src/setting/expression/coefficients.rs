@@ -89,7 +89,19 @@ impl Written {
         with_variable: [&str; 2],
     ) -> Result<Tape, SpecError> {
         self.read(|text| check_number(text, names, with_variable))?;
-        self.read_polynomial(names)
+        Ok(self.read_quotient(names)?.over)
+    }
+
+    /// A number that stands in a text, or an expression without s as a string.
+    pub(in crate::setting) fn number(
+        name: &str,
+        entry: &Entry,
+        whole: &str,
+    ) -> Result<Self, SpecError> {
+        Ok(match Coefficient::of(name.to_owned(), entry, whole)? {
+            Coefficient::Given(written) => written,
+            Coefficient::Number(value) => Self::made(name, Shown(value).to_string(), &entry.span),
+        })
     }
 
     /// A polynomial that may also be a number alone.
@@ -101,13 +113,7 @@ impl Written {
         if !entry.is_number() {
             return Self::polynomial(name, entry, whole);
         }
-        Ok(Self {
-            name: name.to_owned(),
-            text: Shown(entry.number()?).to_string(),
-            span: entry.span.clone(),
-            from: None,
-            coefficients: Vec::new(),
-        })
+        Self::number(name, entry, whole)
     }
 
     /// A polynomial as written in a text: an expression, or a list of coefficients, which is turned
@@ -131,18 +137,14 @@ impl Written {
             let error = entry.error("an empty list is no polynomial");
             return Err(error.help("its coefficients, the highest power first; [0] is zero"));
         }
+        let text = sum(&coefficients);
+        let given = coefficients.into_iter().filter_map(|of| match of {
+            Coefficient::Given(written) => Some(written),
+            Coefficient::Number(_) => None,
+        });
         Ok(Self {
-            name: name.to_owned(),
-            text: sum(&coefficients),
-            span: entry.span.clone(),
-            from: None,
-            coefficients: coefficients
-                .into_iter()
-                .filter_map(|of| match of {
-                    Coefficient::Given(written) => Some(written),
-                    Coefficient::Number(_) => None,
-                })
-                .collect(),
+            coefficients: given.collect(),
+            ..Self::made(name, text, &entry.span)
         })
     }
 }

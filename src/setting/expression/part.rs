@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::fraction::{self, Factor, over_one_divisor};
 use super::tape::Op;
 use crate::linear::general::polynomial::MOST_DEGREE;
 
@@ -46,6 +47,8 @@ pub(super) struct Part {
     pub place: Range<usize>,
     /// Its value, for a literal number.
     pub number: Option<f64>,
+    /// What it is divided by, where that has s in it.
+    pub under: Vec<Factor>,
 }
 
 impl Part {
@@ -55,7 +58,13 @@ impl Part {
             degree,
             place,
             number: None,
+            under: Vec::new(),
         }
+    }
+
+    /// The degree of what it is divided by.
+    pub(super) fn divisor_degree(&self) -> usize {
+        self.under.iter().map(|factor| factor.degree).sum()
     }
 
     /// The part as a polynomial, with its degree, even without s.
@@ -68,7 +77,7 @@ impl Part {
         (self, 0)
     }
 
-    /// Appends `other` and an operation on both.
+    /// Appends `other` and an operation on both; the result stands over the divisor of this part.
     pub(super) fn with(mut self, other: Self, op: Op, degree: Option<usize>) -> Self {
         self.ops.extend(other.ops);
         self.place = self.place.start..other.place.end;
@@ -84,22 +93,31 @@ impl Part {
         self.degree = degree;
         self
     }
-}
 
-pub(super) fn sum(first: Part, second: Part, [numbers, polynomials]: [Op; 2]) -> Part {
-    if first.degree.is_none() && second.degree.is_none() {
-        return first.with(second, numbers, None);
+    /// Appends that this polynomial, a factor of a divisor, must not be 0.
+    pub(super) fn divisor(self) -> Self {
+        let degree = self.degree;
+        self.then(Op::Divisor, degree)
     }
-    let ((first, m), (second, n)) = (first.lifted(), second.lifted());
-    first.with(second, polynomials, Some(m.max(n)))
 }
 
-pub(super) fn product(first: Part, second: Part) -> Read<Part> {
+pub(super) fn sum(first: Part, second: Part, [numbers, polynomials]: [Op; 2]) -> Read<Part> {
+    if first.degree.is_none() && second.degree.is_none() {
+        return Ok(first.with(second, numbers, None));
+    }
+    let [first, second] = over_one_divisor(first, second)?;
+    let ((first, m), (second, n)) = (first.lifted(), second.lifted());
+    Ok(first.with(second, polynomials, Some(m.max(n))))
+}
+
+pub(super) fn product(mut first: Part, mut second: Part) -> Read<Part> {
+    first.under.append(&mut second.under);
+    let place = first.place.start..second.place.end;
+    check_degree(first.divisor_degree(), &place)?;
     match (first.degree, second.degree) {
         (None, None) => Ok(first.with(second, Op::Multiply, None)),
         (Some(n), None) | (None, Some(n)) => Ok(first.with(second, Op::Scale, Some(n))),
         (Some(m), Some(n)) => {
-            let place = first.place.start..second.place.end;
             check_degree(m + n, &place)?;
             Ok(first.with(second, Op::MultiplyPolynomials, Some(m + n)))
         }
@@ -108,8 +126,7 @@ pub(super) fn product(first: Part, second: Part) -> Read<Part> {
 
 pub(super) fn quotient(first: Part, second: Part) -> Read<Part> {
     match (first.degree, second.degree) {
-        (_, Some(_)) => Err(Misread::at(second.place, "division by what has s in it")
-            .help("multiply the whole equation by it: P and Q are polynomials")),
+        (_, Some(_)) => fraction::quotient(first, &second),
         (None, None) => Ok(first.with(second, Op::Divide, None)),
         (degree, None) => Ok(first.with(second, Op::ScaleDown, degree)),
     }
@@ -120,7 +137,7 @@ pub(super) fn power(base: Part, exponent: Part) -> Read<Part> {
         return match (base.degree, exponent.degree) {
             (None, None) => Ok(base.with(exponent, Op::Raise, None)),
             (_, Some(_)) => Err(Misread::at(exponent.place, "an exponent with s in it")
-                .help("P and Q are polynomials: exponents are of parameters alone")),
+                .help("exponents are of parameters alone")),
             (Some(_), None) => Err(Misread::at(
                 exponent.place,
                 "an exponent of what has s in it must be a whole number, as in s^2",
@@ -135,14 +152,19 @@ pub(super) fn power(base: Part, exponent: Part) -> Read<Part> {
     let (whole, until) = (n as i32, exponent.place.end);
     let mut powered = match base.degree {
         None => base.then(Op::Power(whole), None),
-        Some(_) if n < 0.0 => {
-            return Err(Misread::at(place, "a negative power of what has s in it")
-                .help("multiply the whole equation by it: P and Q are polynomials"));
-        }
         Some(degree) => {
-            let degree = degree * whole.unsigned_abs() as usize;
-            check_degree(degree, &(base.place.start..until))?;
-            base.then(Op::PowerOfPolynomial(whole.unsigned_abs()), Some(degree))
+            let (times, place) = (whole.unsigned_abs(), base.place.start..until);
+            let degree = degree * times as usize;
+            check_degree(degree.max(base.divisor_degree() * times as usize), &place)?;
+            let (under, count) = (base.under.clone(), times as usize * base.under.len());
+            let mut base = base;
+            base.under = under.into_iter().cycle().take(count).collect();
+            let powered = base.then(Op::PowerOfPolynomial(times), Some(degree));
+            if n < 0.0 {
+                let one = Part::of(Op::Number(1.0), None, place);
+                return fraction::quotient(one, &powered);
+            }
+            powered
         }
     };
     powered.place.end = until;
@@ -153,7 +175,7 @@ pub(super) fn power(base: Part, exponent: Part) -> Read<Part> {
     Ok(powered)
 }
 
-fn check_degree(degree: usize, place: &Range<usize>) -> Read<()> {
+pub(super) fn check_degree(degree: usize, place: &Range<usize>) -> Read<()> {
     if degree <= MOST_DEGREE {
         return Ok(());
     }

@@ -8,8 +8,9 @@
 //! operand = number | name | "(" sum ")" | function "(" sum { "," sum } ")"
 //! ```
 //!
-//! Divisors, exponents and arguments of functions do not contain s; what contains it has whole
-//! powers from 0 on. Operations are recorded in the order in which they are read, for a [`Tape`].
+//! Exponents and arguments of functions do not contain s; what contains it has whole powers.
+//! Operations are recorded in the order in which they are read, for a [`Tape`]; divisors with s in
+//! them beside it, for a [`Quotient`].
 
 use std::ops::Range;
 
@@ -20,6 +21,7 @@ use winnow::error::ParserError;
 use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
 use winnow::token::{any, take_while};
 
+use super::fraction::Quotient;
 use super::part::{Misread, Part, Read, negated, power, product, quotient, sum};
 use super::tape::{Function, Op, Tape};
 use crate::text::nearest::did_you_mean;
@@ -251,8 +253,9 @@ fn function(
         let argument = whole(input)?;
         if argument.degree.is_some() {
             let message = format!("{name} of what has s in it");
-            return Err(Misread::at(argument.place, message)
-                .help("P and Q are polynomials: functions are of parameters alone"));
+            return Err(Misread::at(argument.place, message).help(
+                "functions are of parameters alone; the delay acts by the form of a system",
+            ));
         }
         arguments.push(argument);
         multispace0.parse_next(input)?;
@@ -318,10 +321,10 @@ fn operator<'n>(input: &mut Input<'n>) -> Read<Infix<Input<'n>, Part, Misread>> 
     any.parse_next(input)?;
     match next {
         Some('+') => Ok(Infix::Left(5, |_, a, b| {
-            Ok(sum(a, b, [Op::Add, Op::AddPolynomials]))
+            sum(a, b, [Op::Add, Op::AddPolynomials])
         })),
         Some('-') => Ok(Infix::Left(5, |_, a, b| {
-            Ok(sum(a, b, [Op::Subtract, Op::SubtractPolynomials]))
+            sum(a, b, [Op::Subtract, Op::SubtractPolynomials])
         })),
         Some('*') if ahead(input).0 == Some('*') => {
             let place = place.start..place.end + 1;
@@ -353,14 +356,16 @@ fn whole(input: &mut Input) -> Read<Part> {
         .parse_next(input)
 }
 
-/// Reads `text` as a polynomial in s. Each of `names` stands for the value with its index.
-pub(in crate::setting) fn read(text: &str, names: &[&str]) -> Read<Tape> {
+/// Reads `text` as a quotient of polynomials in s. `names` stand for the values in their order.
+pub(in crate::setting) fn read(text: &str, names: &[&str]) -> Read<Quotient> {
     let (part, degree) = read_whole(text, names, (Some(VARIABLE), true))?.lifted();
-    Ok(Tape::new(part.ops, degree))
+    Ok(Quotient {
+        over: Tape::new(part.ops, degree),
+        under: part.under,
+    })
 }
 
-/// Reads `text` as a number that is to have no `kinks` unless they are allowed. Each of `names`
-/// stands for the value with its index.
+/// Reads `text` as a number that has no `kinks` unless they are allowed, with `names` as in `read`.
 pub(in crate::setting) fn read_number(text: &str, names: &[&str], kinks: bool) -> Read<Tape> {
     let part = read_whole(text, names, (None, kinks))?;
     Ok(Tape::new(part.ops, 0))

@@ -83,6 +83,33 @@ pub(in crate::setting) enum Op {
     ScaleDown,
     NegatePolynomial,
     PowerOfPolynomial(u32),
+    /// A polynomial that divides, and so is not 0 at all s.
+    Divisor,
+}
+
+impl Op {
+    /// How many operands it takes.
+    pub(super) fn operands(self) -> usize {
+        match self {
+            Self::Number(_) | Self::Pi | Self::Value(_) | Self::Variable => 0,
+            Self::Negate | Self::Power(_) | Self::Apply(_) | Self::Lift => 1,
+            Self::NegatePolynomial | Self::PowerOfPolynomial(_) | Self::Divisor => 1,
+            Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Raise => 2,
+            Self::Smaller | Self::Larger | Self::AddPolynomials | Self::SubtractPolynomials => 2,
+            Self::MultiplyPolynomials | Self::Scale | Self::ScaleDown => 2,
+        }
+    }
+
+    /// Whether its result is a number, not a polynomial.
+    pub(super) fn makes_number(self) -> bool {
+        let of_two = matches!(
+            self,
+            Self::Add | Self::Subtract | Self::Multiply | Self::Divide
+        );
+        let of_one = matches!(self, Self::Negate | Self::Power(_) | Self::Apply(_));
+        let alone = matches!(self, Self::Number(_) | Self::Pi | Self::Value(_));
+        of_two || of_one || alone || matches!(self, Self::Raise | Self::Smaller | Self::Larger)
+    }
 }
 
 /// An expression that is a polynomial in s, with the place of every operation.
@@ -188,9 +215,16 @@ impl Stacks {
                 self.polynomials.extend(power);
                 return is_known;
             }
+            Op::Divisor => return self.polynomials.last().is_some_and(|of| !may_vanish(of)),
         }
         self.numbers.last().is_none_or(|number| number.is_known())
     }
+}
+
+/// Whether no coefficient is certain to differ from 0.
+fn may_vanish(of: &Polynomial) -> bool {
+    let mut each = of.coefficients().iter().zip(of.errors());
+    each.all(|(value, error)| value.abs() <= *error)
 }
 
 impl Tape {

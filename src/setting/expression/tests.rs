@@ -1,15 +1,22 @@
 use num_complex::Complex64;
 use proptest::prelude::*;
 
-use super::Stacks;
 use super::names::names_in;
 use super::reader::*;
-use crate::linear::general::polynomial::MOST_DEGREE;
+use super::{Misread, Stacks, Tape};
+use crate::linear::general::polynomial::{MOST_DEGREE, Polynomial};
 
 const NAMES: [&str; 3] = ["a", "b_2", "tau"];
 
+/// A text without divisors in s.
+fn polynomial(text: &str) -> Result<Tape, Misread> {
+    let read = read(text, &NAMES)?;
+    assert!(read.under.is_empty(), "{text}");
+    Ok(read.over)
+}
+
 fn coefficients(text: &str, values: &[f64]) -> Vec<f64> {
-    let tape = read(text, &NAMES).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+    let tape = polynomial(text).unwrap_or_else(|e| panic!("{text}: {e:?}"));
     let found = tape.at(values, &mut Stacks::default());
     found
         .unwrap_or_else(|e| panic!("{text}: {e:?}"))
@@ -82,8 +89,14 @@ fn what_is_not_understood_is_told_in_its_place() {
         ("1 + max(a)", "max(a)", "takes two or more"),
         ("sqrt(a", "(", "not closed"),
         ("exp(-s*tau)", "-s*tau", "exp of what has s in it"),
-        ("1/(s + 1)", "(s + 1)", "division by what has s"),
-        ("s^-1", "-1", "negative power"),
+        ("1/(s^9*(s^8 - 1))", "s^9*(s^8 - 1)", "degree 17"),
+        ("1/s^9/(s^8 - 1)", "1/s^9/(s^8 - 1)", "degree 17"),
+        ("(s + 1)^-17", "(s + 1)^-17", "degree 17"),
+        (
+            "1/(s + 1)^9 + 1/(s - 1)^9",
+            "1/(s + 1)^9 + 1/(s - 1)^9",
+            "degree 18",
+        ),
         ("s^a", "a", "whole number"),
         ("s^0.5", "0.5", "whole number"),
         ("2^s", "s", "an exponent with s in it"),
@@ -158,7 +171,7 @@ fn a_determinant_that_was_expanded_elsewhere_is_read() {
     let all: Vec<usize> = (0..N).collect();
     let text = expanded(&rows, &all, &all).join(" + ");
     assert!((20_000..=LONGEST).contains(&text.len()), "{}", text.len());
-    let tape = read(&text, &names).unwrap();
+    let tape = read(&text, &names).unwrap().over;
     let found = tape.at(&values, &mut Stacks::default()).unwrap();
     assert_eq!(found.degree(), 2 * N);
     let [m, zeta, stiffness, first, second] = values;
@@ -183,7 +196,9 @@ fn greek_letters_are_letters_and_pi_is_the_number() {
     let names = ["ω", "μ_2", "tau"];
     let values = [2.0, -3.0, 0.5];
     let found = |text: &str| {
-        let tape = read(text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        let tape = read(text, &names)
+            .unwrap_or_else(|e| panic!("{text}: {e:?}"))
+            .over;
         let found = tape.at(&values, &mut Stacks::default()).unwrap();
         (found.coefficients().to_vec(), found.errors().to_vec())
     };
@@ -231,12 +246,76 @@ fn what_has_no_value_is_told_in_its_place() {
         ("exp(1e5)", "exp(1e5)"),
         ("(1e300*s + 1)*(1e300*s)", "(1e300*s + 1)*(1e300*s)"),
     ] {
-        let tape = read(text, &NAMES).unwrap();
+        let tape = polynomial(text).unwrap();
         let place = tape
             .at(&[2.0, -3.0, 0.5], &mut Stacks::default())
             .unwrap_err();
         assert_eq!(&text[place], part, "{text}");
     }
+}
+
+/// Coefficients of a dividend and of the factors below it, at a = 2, b_2 = −3, tau = 0.5.
+#[test]
+fn divisors_in_s_stand_below_once_each() {
+    let (s, lag) = (vec![0.0, 1.0], vec![1.0, 2.0]);
+    for (text, over, under) in [
+        ("1/(a*s + 1)", vec![1.0], vec![lag.clone()]),
+        (
+            "b_2/(s*(a*s + 1))",
+            vec![-3.0],
+            vec![s.clone(), lag.clone()],
+        ),
+        // The factors of a divisor count each by itself, so that no common one comes twice.
+        (
+            "1/s + 3/(s*(a*s + 1))",
+            vec![4.0, 2.0],
+            vec![s.clone(), lag.clone()],
+        ),
+        (
+            "1/(a*s + 1) + s/(a*s + 1)",
+            vec![1.0, 1.0],
+            vec![lag.clone()],
+        ),
+        ("1/s - 1/s^2", vec![-1.0, 1.0], vec![s.clone(), s.clone()]),
+        ("1 + a/(s*4)", vec![0.5, 1.0], vec![s.clone()]),
+        ("-1/(-s)", vec![1.0], vec![s.clone()]),
+        ("1/(1 + 1/s)", vec![0.0, 1.0], vec![vec![1.0, 1.0]]),
+        ("(1/s)/(1/(a*s + 1))", vec![1.0, 2.0], vec![s.clone()]),
+        ("1/(s/4)", vec![4.0], vec![s.clone()]),
+        ("s^-2*tau", vec![0.5], vec![s.clone(), s.clone()]),
+        (
+            "(s/(a*s + 1))^2",
+            vec![0.0, 0.0, 1.0],
+            vec![lag.clone(), lag.clone()],
+        ),
+        ("(1/s)^-1", vec![0.0, 1.0], vec![]),
+        // Nothing is cancelled.
+        ("s/s", vec![0.0, 1.0], vec![s.clone()]),
+        ("(s + 1)/(s + 1) - 1", vec![0.0], vec![vec![1.0, 1.0]]),
+    ] {
+        let read = read(text, &NAMES).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        let value = |tape: &Tape| {
+            let found = tape.at(&[2.0, -3.0, 0.5], &mut Stacks::default());
+            found
+                .unwrap_or_else(|e| panic!("{text}: {e:?}"))
+                .coefficients()
+                .to_vec()
+        };
+        assert_eq!(value(&read.over), over, "{text}");
+        let found: Vec<_> = read
+            .under
+            .iter()
+            .map(|factor| value(&factor.tape()))
+            .collect();
+        assert_eq!(found, under, "{text}");
+    }
+    // A divisor that is 0 at all s has no inverse.
+    let read = read("s + 1/((a - 2)*s)", &NAMES).unwrap();
+    let tape = read.over.at(&[2.0, 0.0, 0.0], &mut Stacks::default());
+    assert!(tape.is_err(), "{tape:?}");
+    let fraction = "1/(1 + ".repeat(50) + "s" + &")".repeat(50);
+    let error = super::reader::read(&fraction, &NAMES).unwrap_err();
+    assert!(error.message.contains("too long"), "{error:?}");
 }
 
 /// An expression as a tree, evaluated by the rules of arithmetic, independently of `read`.
@@ -310,6 +389,7 @@ impl Tree {
                 match op {
                     '+' => (a + b, size_a + size_b),
                     '-' => (a - b, size_a + size_b),
+                    '/' => (a / b, size_a / b.abs() + a.abs() * size_b / (b * b)),
                     _ => (a * b, size_a * size_b),
                 }
             }
@@ -318,13 +398,18 @@ impl Tree {
 }
 
 fn tree() -> impl Strategy<Value = Tree> {
+    tree_with(vec!['+', '-', '*'])
+}
+
+/// Trees with these operations of two operands.
+fn tree_with(ops: Vec<char>) -> impl Strategy<Value = Tree> {
     let leaf = prop_oneof![
         prop_oneof![(0..9_u8).prop_map(f64::from), 1e-9..1e3_f64].prop_map(Tree::Number),
         (0..NAMES.len()).prop_map(Tree::Name),
         Just(Tree::Variable),
     ];
-    leaf.prop_recursive(6, 24, 2, |inner| {
-        let op = prop_oneof![Just('+'), Just('-'), Just('*')];
+    leaf.prop_recursive(6, 24, 2, move |inner| {
+        let op = proptest::sample::select(ops.clone());
         prop_oneof![
             inner.clone().prop_map(|a| Tree::Negated(Box::new(a))),
             (op, inner.clone(), inner.clone()).prop_map(|(op, a, b)| Tree::Two(
@@ -348,7 +433,7 @@ proptest! {
         let (exact, size) = tree.value(s, &values);
         for all in [false, true] {
             let text = tree.print(all);
-            let tape = match read(&text, &NAMES) {
+            let tape = match polynomial(&text) {
                 Ok(tape) => tape,
                 // Powers within powers of numbers, and signs, can be more than there may be.
                 Err(error) => panic!("{text}: {error:?}"),
@@ -363,6 +448,42 @@ proptest! {
             // The bound is no smaller than the actual error, and not much larger.
             let bound: f64 = found.errors().iter().rev().fold(0.0, |sum, e| sum * s.abs() + e);
             prop_assert!(bound <= 1e-11 * size + 1e-290, "{text}: {bound:e} of {size:e}");
+        }
+    }
+
+    /// A tree with divisions is one polynomial over others, of the same value.
+    #[test]
+    fn quotients_have_the_value_of_their_tree(
+        tree in tree_with(vec!['+', '-', '*', '/', '/']),
+        values in proptest::array::uniform3(-3.0..3.0_f64),
+        s in -1.5..1.5_f64,
+    ) {
+        let (exact, size) = tree.value(s, &values);
+        let text = tree.print(false);
+        let read = match read(&text, &NAMES) {
+            Ok(read) => read,
+            Err(error) => {
+                prop_assert!(error.message.contains("degree"), "{text}: {error:?}");
+                return Ok(());
+            }
+        };
+        let of = |polynomial: &Polynomial, s: f64| {
+            polynomial.coefficients().iter().rev().fold(0.0, |sum, c| sum * s + c)
+        };
+        let sizes = |polynomial: &Polynomial| {
+            polynomial.coefficients().iter().rev().fold(0.0, |sum, c| sum * s.abs() + c.abs())
+        };
+        let mut stacks = Stacks::default();
+        let (mut under, mut size_under) = (1.0, 1.0);
+        for factor in &read.under {
+            let Ok(factor) = factor.tape().at(&values, &mut stacks) else { return Ok(()) };
+            (under, size_under) = (under * of(&factor, s), size_under * sizes(&factor));
+        }
+        let Ok(over) = read.over.at(&values, &mut stacks) else { return Ok(()) };
+        if size < 1e9 && size_under < 1e9 {
+            let (apart, scale) = ((of(&over, s) - exact * under).abs(), sizes(&over));
+            let allowed = scale + size * size_under;
+            prop_assert!(apart <= 1e-9 * allowed, "{text}: {apart:e} of {allowed:e}");
         }
     }
 

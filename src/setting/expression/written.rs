@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::part::Read;
-use super::{Tape, coefficients, reader};
+use super::{Quotient, coefficients, reader};
 use crate::text::toml_reader::{Entry, SpecError};
+use crate::text::words;
 
 /// An expression as written in a text.
 pub(in crate::setting) struct Written {
@@ -17,6 +18,8 @@ pub(in crate::setting) struct Written {
     pub(super) from: Option<usize>,
     /// The coefficients of a list that are expressions.
     pub(super) coefficients: Vec<Self>,
+    /// The dividends and divisors of a product of quotients, from which the text was made.
+    pub(super) parts: Vec<Self>,
 }
 
 impl Written {
@@ -40,14 +43,58 @@ impl Written {
             span: entry.span.clone(),
             text,
             coefficients: Vec::new(),
+            parts: Vec::new(),
         })
     }
 
-    /// The polynomial in s that is written here. Each of `names` stands for the value with its
-    /// index.
-    pub(in crate::setting) fn read_polynomial(&self, names: &[&str]) -> Result<Tape, SpecError> {
+    /// A text that was made from what stands at `span`.
+    pub(super) fn made(name: &str, text: String, span: &Range<usize>) -> Self {
+        Self {
+            name: name.to_owned(),
+            text,
+            span: span.clone(),
+            from: None,
+            coefficients: Vec::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// A product of quotients at `span`, each a dividend and a divisor.
+    pub(in crate::setting) fn product(
+        name: &str,
+        quotients: Vec<(Self, Option<Self>)>,
+        span: &Range<usize>,
+    ) -> Self {
+        let text = quotients.iter().map(|(over, under)| match under {
+            Some(under) => format!("{}/{}", over.grouped(), under.grouped()),
+            None => over.grouped(),
+        });
+        let text = text.collect::<Vec<_>>().join(" * ");
+        let parts = quotients.into_iter();
+        let parts = parts.flat_map(|(over, under)| [Some(over), under]);
+        Self {
+            parts: parts.flatten().collect(),
+            ..Self::made(name, text, span)
+        }
+    }
+
+    /// Its text as an operand, in parentheses where it has operators.
+    fn grouped(&self) -> String {
+        let text = self.text.trim();
+        if text.chars().all(|c| words::belongs(c) || c == '.') {
+            return text.to_owned();
+        }
+        format!("({text})")
+    }
+
+    /// The quotient of polynomials in s that is written here. Each of `names` stands for the value
+    /// with its index.
+    pub(in crate::setting) fn read_quotient(&self, names: &[&str]) -> Result<Quotient, SpecError> {
         for coefficient in &self.coefficients {
             coefficient.read(|text| coefficients::check(text, names))?;
+        }
+        for part in &self.parts {
+            part.read_quotient(names)?;
         }
         self.read(|text| reader::read(text, names))
     }

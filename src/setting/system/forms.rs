@@ -1,8 +1,10 @@
-//! The forms in which a file gives its system: P and Q, B and A, matrices, or powers of e^(−sτ).
+//! The forms in which a file gives its system: P and Q, B and A, matrices, powers of e^(−sτ), or
+//! a loop of plant and controller.
 
 use std::ops::Range;
 
-use super::expressed::Expression;
+use super::closed_loop::{CONTROLLER, DELAY, PID, PLANT, WrittenLoop};
+use super::expressed::{Expression, clear};
 use super::matrices::{Matrices, WrittenFeedback, WrittenMatrix};
 use super::{Form, IGNORED_ROOTS};
 use crate::setting::expression::Written;
@@ -18,7 +20,7 @@ pub(in crate::setting) const MOST_POWERS: usize = 9;
 
 /// What a system without an equation is told.
 const FORMS: &str = "either P and Q, or the open loop B and the feedback A: expressions in s or \
-    lists of coefficients; or matrices A0 and A1, or D = [p0, p1, p2]";
+    lists of coefficients; or matrices A0 and A1, or D = [p0, p1, p2], or plant and controller";
 
 /// The keys of the forms, as written in a text.
 pub(super) struct WrittenForm {
@@ -26,13 +28,18 @@ pub(super) struct WrittenForm {
     matrices: [Option<WrittenMatrix>; 3],
     feedback: Option<WrittenFeedback>,
     powers: Option<Vec<Written>>,
+    closed_loop: WrittenLoop,
 }
 
-fn polynomial(written: &Written, names: &[&str]) -> Result<Expression, SpecError> {
-    Ok(Expression {
-        text: written.text.clone(),
-        tape: written.read_polynomial(names)?,
-    })
+/// The two parts of an equation.
+fn equation(written: [&Written; 2], names: &[&str]) -> Result<[Expression; 2], SpecError> {
+    let [first, second] = written;
+    let mut parts = [
+        Expression::of(first, names)?,
+        Expression::of(second, names)?,
+    ];
+    clear(&mut parts, &written)?;
+    Ok(parts)
 }
 
 impl WrittenForm {
@@ -47,6 +54,7 @@ impl WrittenForm {
             matrices,
             feedback: document.take(FEEDBACK, |entry| WrittenFeedback::of(entry, whole)),
             powers: document.take(POWERS, |entry| read_powers(entry, whole)),
+            closed_loop: WrittenLoop::take(document, whole),
         }
     }
 
@@ -78,16 +86,18 @@ impl WrittenForm {
         self.check_one(document)?;
         let [p, q, open, gain] = &self.polynomials;
         if let (Some(p), Some(q)) = (p, q) {
-            return Ok(Form::Direct([polynomial(p, names)?, polynomial(q, names)?]));
+            return Ok(Form::Direct(equation([p, q], names)?));
         }
         if let (Some(open), Some(gain)) = (open, gain) {
-            let (open, place) = (polynomial(open, names)?, &gain.span);
-            let gain = polynomial(gain, names)?;
-            check_degrees(&open, &gain, place)?;
-            return Ok(Form::Feedback([open, gain]));
+            let parts = equation([open, gain], names)?;
+            check_degrees(&parts, &gain.span)?;
+            return Ok(Form::Feedback(parts));
         }
         if let Some(powers) = &self.powers {
             return of_powers(powers, names);
+        }
+        if let Some(closed_loop) = self.closed_loop.read(names, document)? {
+            return Ok(Form::Loop(Box::new(closed_loop)));
         }
         let [a0, a1, e1] = &self.matrices;
         match (a0, a1, e1, &self.feedback) {
@@ -147,6 +157,7 @@ fn group(key: &str) -> Option<usize> {
         "B" | "A" => Some(1),
         POWERS => Some(2),
         FEEDBACK => Some(3),
+        PLANT | CONTROLLER | PID | DELAY => Some(4),
         key => MATRICES.contains(&key).then_some(3),
     }
 }
@@ -169,10 +180,12 @@ fn read_powers(entry: &Entry, whole: &str) -> Result<Vec<Written>, SpecError> {
 }
 
 fn of_powers(powers: &[Written], names: &[&str]) -> Result<Form, SpecError> {
-    let read = powers.iter().map(|of| polynomial(of, names));
-    let read = read.collect::<Result<Vec<_>, _>>()?;
+    let read = powers.iter().map(|of| Expression::of(of, names));
+    let mut read = read.collect::<Result<Vec<_>, _>>()?;
+    let each: Vec<&Written> = powers.iter().collect();
+    clear(&mut read, &each)?;
     for (of, written) in read.iter().zip(powers) {
-        let (m, n) = (of.tape.degree(), read[0].tape.degree());
+        let (m, n) = (of.degree(), read[0].degree());
         if m > n {
             let message = format!("{}: its degree is {m} and that of D[0] {n}", written.name);
             return Err(SpecError::at(written.span.clone(), message)
@@ -185,12 +198,8 @@ fn of_powers(powers: &[Written], names: &[&str]) -> Result<Form, SpecError> {
     })
 }
 
-fn check_degrees(
-    open: &Expression,
-    gain: &Expression,
-    place: &Range<usize>,
-) -> Result<(), SpecError> {
-    let (m, n) = (gain.tape.degree(), open.tape.degree());
+fn check_degrees([open, gain]: &[Expression; 2], place: &Range<usize>) -> Result<(), SpecError> {
+    let (m, n) = (gain.degree(), open.degree());
     if m < n {
         return Ok(());
     }

@@ -139,10 +139,9 @@ impl WrittenMatrix {
         let entries = self.entries.iter().map(|of| {
             Ok(match of {
                 Coefficient::Number(value) => Value::Number(*value),
-                Coefficient::Given(written) => Value::Of(Expression {
-                    text: written.text.clone(),
-                    tape: written.read_without_variable(names, WITH_VARIABLE)?,
-                }),
+                Coefficient::Given(written) => {
+                    Value::Of(Expression::number(written, names, WITH_VARIABLE)?)
+                }
             })
         });
         Ok(Entries {
@@ -288,7 +287,7 @@ impl Entries {
     pub(super) fn tapes(&self) -> impl Iterator<Item = &Tape> {
         self.values.iter().filter_map(|value| match value {
             Value::Number(_) => None,
-            Value::Of(expression) => Some(&expression.tape),
+            Value::Of(expression) => Some(expression.tape()),
         })
     }
 

@@ -17,6 +17,9 @@
 //! # A1 = [[0, 0], ["g", 0]]           # or feedback = { B, K, C } with A1 = B K C
 //! # or powers of the delay, D = p0 + p1 e^(−s tau) + p2 e^(−2 s tau)
 //! # D = ["s^2 + 1", "k*s", 0.1]
+//! # or a loop, D = den + num e^(−s tau) of controller times plant
+//! # plant = { num = ["K"], den = [1, 0.5, 0] }
+//! # controller = "k_p + k_i/s"        # or pid = { k_p, k_i, k_d, t_f }
 //!
 //! # optional: so many roots at 0 at every delay come from the form and are no roots of the system
 //! ignore_roots_at_zero = 0
@@ -32,11 +35,13 @@
 //! unit = "rpm"
 //! ```
 //!
+//! - `closed_loop`: a loop of plant and controller, as transfer functions
 //! - `expressed`: an expression as text and for evaluation
 //! - `file`: reads the file; `forms`: the forms of a system; `matrices`: matrices in it
 //! - `text`: writes it; [`shipped`]: systems that are part of the program
 //! - `parameter`: a parameter of a system; `speed`: the speed of which its delay is the period
 
+mod closed_loop;
 mod expressed;
 mod file;
 pub(super) mod forms;
@@ -49,6 +54,7 @@ mod text;
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use closed_loop::ClosedLoop;
 use expressed::Expression;
 use forms::MOST_POWERS;
 use matrices::{Entries, Matrices};
@@ -116,6 +122,8 @@ enum Form {
     Matrices(Box<Matrices>),
     /// Σ p_k e^(−kλτ) of three or more.
     Powers(Vec<Expression>),
+    /// A plant in a loop.
+    Loop(Box<ClosedLoop>),
 }
 
 /// The values on which a system depends, and scratch space for its evaluation.
@@ -170,6 +178,9 @@ impl SystemModel {
             let text = |of: &Entries| (of.name(), of.to_text(str::to_owned).into());
             return of.each().map(text).collect();
         }
+        if let Form::Loop(of) = &self.form {
+            return of.texts();
+        }
         let all = self.polynomials();
         all.map(|(name, of)| (name, Cow::from(&of.text))).collect()
     }
@@ -180,7 +191,7 @@ impl SystemModel {
             Form::Direct(all) => (&["P", "Q"], all),
             Form::Feedback(all) => (&["B", "A"], all),
             Form::Powers(all) => (&POWERS, all),
-            Form::Matrices(_) => (&[], &[]),
+            Form::Matrices(_) | Form::Loop(_) => (&[], &[]),
         };
         names.iter().copied().zip(all)
     }
@@ -189,7 +200,8 @@ impl SystemModel {
     fn tapes(&self) -> Box<dyn Iterator<Item = &Tape> + '_> {
         match &self.form {
             Form::Matrices(of) => Box::new(of.each().flat_map(Entries::tapes)),
-            _ => Box::new(self.polynomials().map(|(_, of)| &of.tape)),
+            Form::Loop(of) => Box::new(of.tapes()),
+            _ => Box::new(self.polynomials().flat_map(|(_, of)| of.tapes())),
         }
     }
 
@@ -249,6 +261,7 @@ impl SystemModel {
             Form::Direct([p, q]) => {
                 System::direct(p.at("P", values, stacks)?, q.at("Q", values, stacks)?)
             }
+            Form::Loop(of) => of.at(values, stacks)?,
             Form::Feedback([open, gain]) => {
                 let (open, gain) = (open.at("B", values, stacks)?, gain.at("A", values, stacks)?);
                 if !gain.is_zero() && gain.degree() >= open.degree() {

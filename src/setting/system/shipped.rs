@@ -4,7 +4,7 @@ use super::SystemModel;
 use crate::text::nearest::did_you_mean;
 
 /// All names, with their files.
-pub const SHIPPED: [(&str, &str); 9] = [
+pub const SHIPPED: [(&str, &str); 11] = [
     (
         "letter",
         include_str!("../../../sweeps/systems/letter.toml"),
@@ -34,6 +34,14 @@ pub const SHIPPED: [(&str, &str); 9] = [
     (
         "ring_road",
         include_str!("../../../sweeps/systems/ring_road.toml"),
+    ),
+    (
+        "pi_loop",
+        include_str!("../../../sweeps/systems/pi_loop.toml"),
+    ),
+    (
+        "smith_predictor",
+        include_str!("../../../sweeps/systems/smith_predictor.toml"),
     ),
 ];
 

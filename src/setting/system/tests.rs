@@ -1,5 +1,11 @@
+//! Tests of systems from files.
+//!
+//! - `loops`: loops of plant and controller, and divisors in s
+
 use super::shipped::{SHIPPED, system, text_of};
 use super::*;
+
+mod loops;
 
 #[test]
 fn shipped_systems_are_read_and_written_as_the_same() {
@@ -49,6 +55,11 @@ fn their_parameters_are_those_of_the_tables() {
         ("delayed_oscillator", "delta b"),
         ("pyragas_focus", "mu omega_0 gain"),
         ("ring_road", "alpha b"),
+        ("pi_loop", "gain time_constant k_p k_i"),
+        (
+            "smith_predictor",
+            "gain model_gain time_constant k_p k_i late",
+        ),
     ] {
         assert_eq!(names(name).join(" "), parameters, "{name}");
     }
@@ -472,7 +483,8 @@ proptest::proptest! {
 
 #[test]
 fn what_does_not_fit_is_told_in_its_place() {
-    for (text, part, says) in MISFITS.iter().chain(MISFITS_OF_MATRICES).copied() {
+    let all = MISFITS.iter().chain(MISFITS_OF_MATRICES);
+    for (text, part, says) in all.chain(loops::MISFITS).copied() {
         let error = text.parse::<SystemModel>().expect_err(text);
         let found = error.span.clone().map(|span| &text[span]);
         assert_eq!(found, part, "{text}: {error:?}");

@@ -46,6 +46,7 @@ impl SystemModel {
         }
         match &self.form {
             Form::Matrices(of) => pairs.extend(of.pairs()),
+            Form::Loop(of) => pairs.extend(of.pairs()),
             Form::Powers(powers) => {
                 let each: Vec<String> = powers.iter().map(|of| quoted(&of.text)).collect();
                 pairs.push(("D", format!("[{}]", each.join(", "))));
