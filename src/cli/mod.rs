@@ -64,6 +64,7 @@
 //! - `setting`: a setting from a file instead of flags, and files of settings
 //! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
 //! - `signals`: signals that stop a command in order, even while it reads or draws
+//! - `response`: `slipmap simulate --system`, the response of a system in time
 //! - `simulate`: `slipmap simulate`
 //! - `start_args`: the flags for the start and the end of a motion
 //! - `status`: `slipmap status`
@@ -133,6 +134,7 @@ mod print_args;
 mod read_map;
 mod reference;
 mod reproduce;
+mod response;
 mod return_map_args;
 mod run;
 mod say;

@@ -33,6 +33,7 @@ use super::output::{
 };
 use super::parameters::ParameterArgs;
 use super::plot;
+use super::response::{ResponseArgs, ResponseOut, Told};
 use super::return_map_args::ReturnMapArgs;
 use super::say::{self, ForPeople};
 use super::setting::SettingArgs;
@@ -44,11 +45,14 @@ use super::text_output::{STANDARD_OUTPUT, To, is_csv};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   slipmap simulate sweeps/fig3a.toml
-  slipmap simulate --setting setting.toml --x-dot0 0 --switch-on 70 --until 150")]
+  slipmap simulate --setting setting.toml --x-dot0 0 --switch-on 70 --until 150
+  slipmap simulate --system pi_loop --tau 1 --step reference --picture step.png")]
 pub(super) struct Args {
     /// The case file
-    #[arg(value_name = "CASE.toml", conflicts_with_all = ["map", "setting"])]
+    #[arg(value_name = "CASE.toml", conflicts_with_all = ["map", "setting", "system"])]
     case: Option<PathBuf>,
+    #[command(flatten)]
+    response: ResponseArgs,
     #[command(flatten)]
     parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
@@ -88,11 +92,15 @@ struct MotionOut {
 
 /// The schema of its JSON.
 pub(super) fn described() -> AnswerSchema {
-    AnswerSchema::of("simulate").or::<MotionOut>()
+    let of = AnswerSchema::of("simulate");
+    of.or::<MotionOut>().or::<ResponseOut>()
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    if args.response.is_given() {
+        return args.respond(&signals);
+    }
     args.check_alone()?;
     let spec = args.read()?;
     // A cell of a map has a delay whatever its gains are; flags are checked when they are read.
@@ -160,6 +168,23 @@ fn simulate_to_text(
 }
 
 impl Args {
+    /// The response of a system from a file.
+    fn respond(&self, signals: &Signals) -> Result<(), Failure> {
+        let others = self.cell.map.is_some() || self.file.is_given() || self.return_map.any();
+        let Some(asked) = self.response.asked(&self.parameters, others)? else {
+            return Ok(());
+        };
+        let output = self.output.as_deref();
+        let told = Told {
+            until: self.start.of_response(&asked.units)?,
+            samples: output.map(|path| self.samples(Some(path))).transpose()?,
+            picture: self.picture.as_deref(),
+            digits: self.digits.get(),
+            json: self.json,
+        };
+        self.response.main(&asked, &told, signals)
+    }
+
     fn follow(&self, spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
         let followed = signals.or_end("there is no trace", || {
             Followed::whole(spec, &Stop::default())
@@ -237,11 +262,16 @@ impl Args {
         if path != Path::new(STANDARD_OUTPUT) && !is_csv(path) {
             return Ok(None);
         }
-        match To::named(Some(path), self.case.as_deref(), self.fresh)? {
+        self.samples(Some(path)).map(Some)
+    }
+
+    /// Where samples go as text.
+    fn samples<'p>(&self, path: Option<&'p Path>) -> Result<To<'p>, Failure> {
+        match To::named(path, self.case.as_deref(), self.fresh)? {
             To::StandardOutput if self.json => Err(Failure::bad_input(
                 "--json and --output - both write to standard output",
             )),
-            to => Ok(Some(to)),
+            to => Ok(to),
         }
     }
 

@@ -7,6 +7,7 @@ use crate::setting::setting_text::number;
 use crate::setting::units::Units;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::cell::alone;
 use super::corners::Corner;
 use super::failure::Failure;
 use super::parameter_values::{TimeOr, Values, amount_of, amounts, in_units};
@@ -67,6 +68,31 @@ impl StartArgs {
         } = &self.times;
         let times = switch_on.is_some() || until.is_some() || seed.is_some();
         !self.state.is_empty() || times || !programme.is_empty()
+    }
+
+    /// The end of a response > 0, the only of these flags that it takes.
+    ///
+    /// # Errors
+    /// When another one is given, or the end is outside its range.
+    pub(super) fn of_response(&self, units: &Units) -> Result<Option<f64>, Failure> {
+        let TimeArgs {
+            switch_on,
+            until,
+            seed,
+            programme,
+        } = &self.times;
+        let others = switch_on.is_some() || seed.is_some() || !programme.is_empty();
+        alone("--system", others || !self.state.is_empty())?;
+        let Some(until) = until else {
+            return Ok(None);
+        };
+        let end = in_units("--until", until, units)?;
+        if end > 0.0 && end <= LARGEST {
+            return Ok(Some(end));
+        }
+        let message = format!("--until {} is outside its range", Shown(end));
+        let help = "a time greater than 0, at most 1e12";
+        Err(Failure::bad_input_with_help(message, help))
     }
 
     /// The values of the state at t = 0, in their ranges.

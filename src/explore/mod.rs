@@ -16,6 +16,7 @@
 //!   it is to stand; [`best_answer`]: the same as plain data
 //! - [`measure`]: an experiment that measures friction through control, at all of its v0
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
+//! - [`response`]: the response of a system in time
 //! - [`law`]: a friction law as a curve
 //! - [`given_setting`]: what a file says of a setting
 //! - [`known`]: all parameters, friction laws and fields; [`systems`]: the systems in the place of
@@ -48,6 +49,7 @@ pub mod motion;
 pub mod motion_bytes;
 pub mod point;
 pub mod problem;
+pub mod response;
 pub mod robust;
 pub mod route;
 pub mod stability;

@@ -31,6 +31,7 @@
 //! - [`matrix`]: systems that are given as matrices, of any rank
 //! - `newton`: polishing of a root (Halley's method) and its error
 //! - `real_zeros`: all zeros of a real function of the frequency
+//! - [`response`]: the response of a system in time
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
 //! - `roots`: bisection
 //! - `rounded`: numbers with a bound on their rounding error
@@ -63,6 +64,7 @@ pub mod matrix;
 pub mod newton;
 pub mod plane;
 mod real_zeros;
+pub mod response;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;

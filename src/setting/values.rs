@@ -11,6 +11,7 @@ use super::parameter::{Group, Parameter};
 use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
 use super::system::{Evaluation, SystemModel};
+use crate::linear::general::Polynomial;
 use crate::linear::line::Linear;
 use crate::model::{Dashpots, FrictionLaw, ModelError, Oscillator, RateAndState, SlidingPoint};
 
@@ -103,6 +104,28 @@ impl Setting {
         let system = self.file()?;
         system.put_into(at, self.feedback());
         Some(system.model.at(at))
+    }
+
+    /// The polynomials of a system with powers of its delay at this setting, each from the constant
+    /// on; none of others.
+    pub(crate) fn powers_of_delay(&self) -> Result<Option<Vec<Vec<f64>>>, NoAnswer> {
+        let mut at = Evaluation::default();
+        let Some(system) = self.file() else {
+            return Ok(None);
+        };
+        system.put_into(&mut at, self.feedback());
+        system.model.powers_at(&mut at)
+    }
+
+    /// The numerator over D of what a disturbance at the input of the plant does to the output;
+    /// none where the system is no loop of plant and controller.
+    pub(crate) fn disturbed_through(&self) -> Result<Option<Polynomial>, NoAnswer> {
+        let mut at = Evaluation::default();
+        let Some(system) = self.file() else {
+            return Ok(None);
+        };
+        system.put_into(&mut at, self.feedback());
+        system.model.disturbed_through(&mut at)
     }
 
     /// The value of the quantity of an axis.

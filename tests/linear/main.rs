@@ -54,6 +54,8 @@ mod margins_beyond;
 mod matrices;
 #[cfg(feature = "explore")]
 mod near_resonance;
+#[cfg(feature = "sweep")]
+mod responses;
 #[cfg(feature = "cli")]
 mod robust;
 #[cfg(feature = "sweep")]

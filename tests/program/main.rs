@@ -42,6 +42,7 @@ mod progress;
 #[cfg(target_os = "linux")]
 mod queue;
 mod reproduce;
+mod responses;
 mod return_map;
 mod rig;
 mod shards;

@@ -180,6 +180,13 @@ impl MatrixSystem {
     /// # Errors
     /// When p₀ vanishes or has a lower degree than another, and as for the other forms.
     pub fn of_powers(powers: &[Vec<f64>]) -> Result<Self, MatrixError> {
+        let Self { a, b, c, d } = Self::observer(powers)?;
+        Self::checked(a, c, d, b)
+    }
+
+    /// [`MatrixSystem::of_powers`] in the units of the polynomials: the first signal is y, of which
+    /// D y = 0, and the last state what is not delayed of it.
+    pub(in crate::linear) fn observer(powers: &[Vec<f64>]) -> Result<Self, MatrixError> {
         let degree = |p: &Vec<f64>| p.iter().rposition(|c| *c != 0.0);
         let Some((p0, rest)) = powers.split_first() else {
             return Err(MatrixError::Powers("no polynomials are given"));
@@ -205,7 +212,7 @@ impl MatrixSystem {
             _ if i == j + 1 => 1.0,
             _ => 0.0,
         });
-        Self::checked(a, c, d, b)
+        Ok(Self { a, b, c, d })
     }
 
     fn checked(a: Matrix, c: Matrix, d: Matrix, b: Matrix) -> Result<Self, MatrixError> {
@@ -222,6 +229,11 @@ impl MatrixSystem {
             }
         }
         Ok(Self { a, b, c, d }.balanced())
+    }
+
+    /// A, B, C and D.
+    pub(in crate::linear) fn parts(&self) -> [&Matrix; 4] {
+        [&self.a, &self.b, &self.c, &self.d]
     }
 
     /// n, the number of states.

@@ -323,7 +323,7 @@ impl MatrixSystem {
     }
 
     /// A frequency of the order of the largest of the open loop.
-    pub(super) fn bound(&self) -> f64 {
+    pub(in crate::linear) fn bound(&self) -> f64 {
         let n = self.states();
         let row = |i: usize| {
             let own: f64 = (0..n).map(|j| self.a.at(i, j).abs()).sum();

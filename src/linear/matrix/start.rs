@@ -88,7 +88,7 @@ impl MatrixSystem {
     }
 
     /// A + B (1 − D)⁻¹ C, the matrix of the system without delay.
-    fn closed_loop(&self) -> Option<Matrix> {
+    pub(in crate::linear) fn closed_loop(&self) -> Option<Matrix> {
         let k = self.signals();
         if k == 0 {
             return Some(self.a.clone());

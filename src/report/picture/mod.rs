@@ -18,6 +18,7 @@
 //! - `fit`: a friction law among the points to which it was fitted
 //! - `trace`, `strips`, `stack`, `span`: a motion over time, in panels above one another, or a part
 //!   of it; `close_up`: its switch-on, enlarged
+//! - `response`: the response of a system in time
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `speed`: delays that are periods, shown as speeds
 //! - `curve_lines`: exact curves over cells; `chained`: their pieces in one; `degrees`: dashed
@@ -79,6 +80,7 @@ mod pdf;
 mod print;
 mod rectangles;
 mod render;
+mod response;
 mod roots;
 mod scene;
 mod span;
@@ -119,6 +121,7 @@ pub use file::{Picture, is_name, named_in};
 pub use fit::FitPicture;
 pub use options::{Named, PictureKind, PictureOptions};
 pub use print::Print;
+pub use response::ResponsePicture;
 pub use roots::PointPicture;
 use scene::Scene;
 use traced::Curves;
@@ -191,6 +194,21 @@ pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, Pictur
     roots::draw(picture, &mut scene);
     let origin = Origin {
         of: "the characteristic roots of a point".to_owned(),
+        named: "",
+    };
+    Picture::of(&scene, format, path, origin)
+}
+
+/// Draws the response of a system in time for the file `path`, as [`draw`] does a map.
+///
+/// # Errors
+/// When the name of the file is not that of a picture.
+pub fn draw_response(picture: &ResponsePicture, path: &Path) -> Result<Picture, PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    response::draw(picture, &mut scene);
+    let origin = Origin {
+        of: "the response of a system in time".to_owned(),
         named: "",
     };
     Picture::of(&scene, format, path, origin)

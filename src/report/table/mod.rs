@@ -8,6 +8,7 @@
 //! - `curves`: the crossing curves of a map as rows, one for each vertex
 //! - `measured`: friction measured through control, a row for each v0
 //! - `motion`: a motion as rows
+//! - `response`: the samples of a response in time
 //! - `speeds`: the column of a speed beside the delay that is its period
 //! - `starts`: starts of motions with their outcomes, as rows
 
@@ -15,6 +16,7 @@ mod cells;
 mod curves;
 mod measured;
 mod motion;
+mod response;
 mod speeds;
 mod starts;
 
@@ -25,6 +27,7 @@ pub use cells::write_cells;
 pub use curves::write_curves;
 pub use measured::write_measured;
 pub use motion::{write_events, write_samples};
+pub use response::write_response;
 pub use starts::write_starts;
 
 use super::visible::visible_line;

@@ -344,6 +344,17 @@ impl ClosedLoop {
         self.each(quoted)
     }
 
+    /// n_p d_c at these values: over D, what a disturbance at the input of the plant does to y.
+    pub(super) fn disturbed_through(
+        &self,
+        values: &[f64],
+        stacks: &mut Stacks,
+    ) -> Result<Polynomial, NoAnswer> {
+        let [num, _] = self.plant.quotient_at(PLANT, values, stacks)?;
+        let [_, below] = self.controller.at(values, stacks)?;
+        times(&num, &below, LOOP)
+    }
+
     /// P, the denominators, and Q, the numerators, at these values.
     pub(super) fn at(&self, values: &[f64], stacks: &mut Stacks) -> Result<System, NoAnswer> {
         let [num, den] = self.plant.quotient_at(PLANT, values, stacks)?;

@@ -63,7 +63,7 @@ use parameter::OwnParameter;
 pub(crate) use speed::NO_SPEED;
 pub use speed::{SpeedAxis, SpeedUnit, Turn};
 
-use crate::linear::general::{OriginError, System};
+use crate::linear::general::{OriginError, Polynomial, System};
 use crate::linear::line::Linear;
 use crate::linear::matrix::MatrixSystem;
 use crate::model::Channel;
@@ -137,6 +137,14 @@ pub struct Evaluation {
     pub channel: Channel,
     values: Vec<f64>,
     stacks: Stacks,
+}
+
+impl Evaluation {
+    /// Puts the values of all names in their order.
+    fn fill(&mut self) {
+        self.values.clone_from(&self.own);
+        self.values.push(self.tau);
+    }
 }
 
 impl PartialEq for Evaluation {
@@ -219,8 +227,7 @@ impl SystemModel {
     /// # Errors
     /// Where an expression has no finite value, or the degree of A is not less than that of B.
     pub fn at(&self, at: &mut Evaluation) -> Result<Linear, NoAnswer> {
-        at.values.clone_from(&at.own);
-        at.values.push(at.tau);
+        at.fill();
         let found = match self.with_all_roots(at)? {
             Linear::General(system) if self.ignored_roots > 0 => system,
             found => return Ok(found),
@@ -239,23 +246,39 @@ impl SystemModel {
         })
     }
 
+    /// The polynomials with powers of the delay at a setting; none in other forms.
+    pub(super) fn powers_at(&self, at: &mut Evaluation) -> Result<Option<Vec<Vec<f64>>>, NoAnswer> {
+        at.fill();
+        match &self.form {
+            Form::Powers(powers) => powers_of(powers, &at.values, &mut at.stacks).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// The numerator over D from a disturbance at the input of the plant to the output at a
+    /// setting; none in other forms.
+    pub(super) fn disturbed_through(
+        &self,
+        at: &mut Evaluation,
+    ) -> Result<Option<Polynomial>, NoAnswer> {
+        at.fill();
+        match &self.form {
+            Form::Loop(of) => of.disturbed_through(&at.values, &mut at.stacks).map(Some),
+            _ => Ok(None),
+        }
+    }
+
     /// The system of the expressions; the values are in `at`.
     fn with_all_roots(&self, at: &mut Evaluation) -> Result<Linear, NoAnswer> {
         let (values, stacks) = (&at.values, &mut at.stacks);
         let system = match &self.form {
-            Form::Matrices(of) => {
-                let system = of.at(values, stacks)?;
+            Form::Powers(powers) => {
+                let system = MatrixSystem::of_powers(&powers_of(powers, values, stacks)?);
+                let system = system.map_err(|error| matrices::refused("D", &error))?;
                 return Ok(Linear::Matrix(Box::new(system)));
             }
-            Form::Powers(powers) => {
-                let each = POWERS.into_iter().zip(powers);
-                let powers = each.map(|(name, of)| {
-                    let found = of.at(name, values, stacks)?;
-                    Ok(found.coefficients().to_vec())
-                });
-                let powers = powers.collect::<Result<Vec<_>, NoAnswer>>()?;
-                let system = MatrixSystem::of_powers(&powers);
-                let system = system.map_err(|error| matrices::refused("D", &error))?;
+            Form::Matrices(of) => {
+                let system = of.at(values, stacks)?;
                 return Ok(Linear::Matrix(Box::new(system)));
             }
             Form::Direct([p, q]) => {
@@ -277,6 +300,20 @@ impl SystemModel {
         };
         Ok(Linear::General(Box::new(system)))
     }
+}
+
+/// The coefficients of polynomials with powers of the delay at these values.
+fn powers_of(
+    powers: &[Expression],
+    values: &[f64],
+    stacks: &mut Stacks,
+) -> Result<Vec<Vec<f64>>, NoAnswer> {
+    let each = POWERS.into_iter().zip(powers);
+    let each = each.map(|(name, of)| {
+        let found = of.at(name, values, stacks)?;
+        Ok(found.coefficients().to_vec())
+    });
+    each.collect()
 }
 
 #[cfg(test)]
