@@ -96,19 +96,20 @@ def margins(*, decay: float = 0.0, **at: Any) -> Margins:
 
 def best(
     *,
-    search: str = "alpha_v",
+    search: str | tuple[str, str] = "alpha_v",
     ranges: Mapping[str, tuple[float, float]] | None = None,
     robust: float | str | None = None,
     **at: Any,
 ) -> Best:
-    """The settings of fastest decay over the delay and the parameter `search`.
+    """The settings of fastest decay over the delay and the parameter `search`, or over two of them.
 
     Parameters
     ----------
-    search : str
-        ``"alpha_v"``, ``"alpha_n"`` or, of a system, one of its parameters.
+    search : str or (str, str)
+        ``"alpha_v"``, ``"alpha_n"`` or, of a system, one of its parameters; or two of them, at the
+        delay `tau` or, without it, over the delay too.
     ranges : mapping of str to (from, to), optional
-        Ranges of the search, of `search` and ``tau``.
+        Ranges of the search, by names.
     robust : float or "fit", optional
         Also the setting whose slowest decay is fastest when gain, delay and slope may be off by this
         part, or friction by three standard errors of its fit.
@@ -119,12 +120,14 @@ def best(
     >>> round(found.best.alpha, 3), round(found.best.tau, 3)
     (-3.653, 0.465)
     """
-    for name in (search, "tau"):
+    names = [search] if isinstance(search, str) else list(search)
+    delay = len(names) == 1 or "tau" in (ranges or {})
+    for name in names + ["tau"] * delay:
         if name in at:
             raise InputError(f"a value of {name} is given, which is searched", "ranges={...} bounds the search")
     given = {} if ranges is None else {name: (float(of[0]), float(of[1])) for name, of in ranges.items()}
     said = None if robust is None else str(robust)
-    return _asked(Best, "best", _text(at), search=search, ranges=given, robust=said)
+    return _asked(Best, "best", _text(at), search=names, ranges=given, robust=said)
 
 
 def vc(*, protocol: str = "follow", phase: float | str = 0.0, **at: Any) -> CriticalVelocity:

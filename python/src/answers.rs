@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use pythonize::{depythonize, pythonize};
 use serde::{Deserialize, Serialize};
-use slipmap::answers::best::{Ranges, default_ranges};
+use slipmap::answers::best::{Ranges, default_ranges, longest_delay};
+use slipmap::answers::search_plane::SearchPlane;
 use slipmap::explore::basin::{BasinShare, Followed};
 use slipmap::explore::best::{Control, Recommended, Searched};
 use slipmap::explore::best_answer::BestSetting;
@@ -43,8 +44,8 @@ struct Options {
     roots: u8,
     /// The decay rate that margins are asked for.
     decay: f64,
-    /// The parameter that is searched beside the delay.
-    search: String,
+    /// The parameter that is searched beside the delay, or two of them.
+    search: Vec<String>,
     /// Ranges of the search by names.
     ranges: BTreeMap<String, (f64, f64)>,
     /// What a setting is to stand, in the words of the flag.
@@ -62,7 +63,7 @@ impl Default for Options {
         Self {
             roots: 16,
             decay: 0.0,
-            search: Parameter::AlphaV.name().to_owned(),
+            search: vec![Parameter::AlphaV.name().to_owned()],
             ranges: BTreeMap::new(),
             robust: None,
             over: Over::State.name().to_owned(),
@@ -190,7 +191,7 @@ fn best(py: Python, spec: PointSpec, options: &Options, text: &str) -> PyResult<
         mut setting, units, ..
     } = spec;
 
-    let of = searched(&setting, &options.search).map_err(|error| of_text(py, error, text))?;
+    let of = plane(&setting, &options.search).map_err(|error| of_text(py, error, text))?;
     let system = setting.system().is_some();
     let robust = options.robust.as_deref().map(Spread::read).transpose();
     let robust = robust.map_err(|why| of_input(py, format!("robust: {why}")))?;
@@ -198,30 +199,34 @@ fn best(py: Python, spec: PointSpec, options: &Options, text: &str) -> PyResult<
         let why = "robust settings are known of a block under a law of the velocity alone";
         return Err(of_input(py, why));
     }
-    for open in [&of, &Parameter::Tau.into()] {
+    let delay_given = !of.has_delay() && !setting.get(Parameter::Tau).is_nan();
+    for open in [&of.p, &of.q] {
         setting.vary(open, open.default_value().unwrap_or(f64::NAN));
     }
     setting
         .sliding_point()
         .map_err(|error| of_problem(py, error.into(), text))?;
     let mut ranges = default_ranges(&setting, &of).map_err(|e| of_problem(py, e.into(), text))?;
+    let mut delays = (0.0, longest_delay(&setting));
     for (name, (from, to)) in &options.ranges {
-        let within = range(&mut ranges, &of, name, (*from, *to));
+        let within = range((&mut ranges, &mut delays), &of, name, (*from, *to));
         within.map_err(|error| of_text(py, error, text))?;
     }
+    let delays = (!of.has_delay() && !delay_given).then_some(delays);
     let asked = Searched {
         setting,
         units,
         of,
         ranges,
+        delays,
         robust,
     };
     let found = heeding(py, |stop| Recommended::of(asked, stop))?;
     let found = found.map_err(|why| of_problem(py, why.into(), text))?;
     let toml = setting_text(&found.setting, &found.units, |_| true);
     let said =
-        |p: Parameter| found.searched != p && p != Parameter::Tau && of_point(&found.setting, p);
-    let control = match Control::of(&found.searched) {
+        |p: Parameter| found.searched.p != p && p != Parameter::Tau && of_point(&found.setting, p);
+    let control = match Control::of(&found.searched.p) {
         Control::Velocity => "velocity",
         Control::Load => "load",
     };
@@ -244,7 +249,22 @@ fn best(py: Python, spec: PointSpec, options: &Options, text: &str) -> PyResult<
     told(py, &BestSetting::of(&found), command, toml, None)
 }
 
-/// The parameter that is searched beside the delay.
+/// The plane of the parameters of these names.
+fn plane(setting: &Setting, names: &[String]) -> Result<SearchPlane, SpecError> {
+    match names {
+        [one] => Ok(SearchPlane::with_delay(searched(setting, one)?)),
+        [one, other] if one != other && setting.system().is_some() => Ok(SearchPlane {
+            p: searched(setting, one)?,
+            q: searched(setting, other)?,
+        }),
+        _ => {
+            let message = "search: expected a parameter, or two different ones of a system";
+            Err(SpecError::whole(message).help("search=\"k_p\" or search=(\"k_p\", \"k_d\")"))
+        }
+    }
+}
+
+/// The parameter of this name.
 fn searched(setting: &Setting, name: &str) -> Result<Quantity, SpecError> {
     let mut all = match setting.system() {
         Some(model) => model.quantities(),
@@ -264,18 +284,20 @@ fn searched(setting: &Setting, name: &str) -> Result<Quantity, SpecError> {
 
 /// Puts the range of a parameter in the place of that by default.
 fn range(
-    ranges: &mut Ranges,
-    of: &Quantity,
+    (ranges, delays): (&mut Ranges, &mut (f64, f64)),
+    of: &SearchPlane,
     name: &str,
     (from, to): (f64, f64),
 ) -> Result<(), SpecError> {
     let tau = Quantity::from(Parameter::Tau);
     let (quantity, range) = match name {
-        _ if name == of.name() => (of, &mut ranges.gain),
-        _ if name == tau.name() => (&tau, &mut ranges.tau),
+        _ if name == of.p.name() => (&of.p, &mut ranges.p),
+        _ if name == of.q.name() => (&of.q, &mut ranges.q),
+        _ if name == tau.name() => (&tau, delays),
         _ => {
             let message = format!("ranges: {name} is not searched");
-            return Err(SpecError::whole(message).help(format!("{} and tau are", of.name())));
+            let searched = format!("{} and {} are", of.p.name(), of.q.name());
+            return Err(SpecError::whole(message).help(searched));
         }
     };
     for end in [from, to] {

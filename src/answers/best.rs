@@ -1,11 +1,15 @@
 //! Settings of fastest decay in physical units, for a point of parameter space and for the planes
-//! of a sweep: over the delay and a gain of the block, or a parameter of a system from a file.
+//! of a sweep: over the delay and a gain of the block, or a parameter of a system from a file, or
+//! over two such parameters at one delay.
 
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 
 pub use super::robust::{RobustSetting, robust_setting};
-use crate::linear::best::{self, Best, General, Letter, Optimum, Region, Search, SearchedGain};
+use super::search_plane::SearchPlane;
+use crate::linear::best::{
+    self, Across, Best, General, Letter, Optimum, Region, Search, SearchedGain,
+};
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
@@ -38,13 +42,13 @@ const MOST_MEMORY: f64 = 0.95;
 /// The ranges of a search by [`best_settings`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranges {
-    /// Gains, or values of another parameter that is searched, from ≤ to.
-    pub gain: (f64, f64),
-    /// Delays, 0 ≤ from ≤ to.
-    pub tau: (f64, f64),
+    /// Values of the first parameter that is searched, such as a gain, from ≤ to.
+    pub p: (f64, f64),
+    /// Values of the second one, from ≤ to; delays from 0 on.
+    pub q: (f64, f64),
 }
 
-/// A stable region of the plane of what is searched and the delay, with its own best setting.
+/// A stable region of the plane that is searched, with its own best setting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestRegion {
     /// Its extent, at the resolution of [`crate::linear::best`].
@@ -53,44 +57,47 @@ pub struct BestRegion {
     pub best: Optimum,
 }
 
-/// The best settings of a plane of what is searched and the delay; everything in the units of the
-/// parameters.
+/// The best settings of a plane; everything in the units of the parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestSettings {
     /// The setting of fastest decay or, where none is stable, of slowest growth.
     pub overall: Optimum,
-    /// Every stable region, ordered by its shortest delay.
+    /// Every stable region, ordered by its smallest value of the second parameter.
     pub regions: Vec<BestRegion>,
     /// Number of further regions, which were not searched or decay within rounding.
     pub regions_left_out: usize,
 }
 
-/// Converts dimensionless gains and delays to physical ones. Systems from files are as they are.
+/// Converts dimensionless numbers to physical ones. Systems from files are as they are.
 pub(super) struct Scales {
-    pub(super) gain: f64,
+    /// Of the first parameter.
+    pub(super) p: f64,
+    /// Of the second one.
+    pub(super) q: f64,
     pub(super) time: f64,
 }
 
 impl Scales {
-    pub(super) fn of(setting: &Setting, searched: &Quantity) -> Result<Self, ModelError> {
+    pub(super) fn of(setting: &Setting, plane: &SearchPlane) -> Result<Self, ModelError> {
         let oscillator = setting.oscillator()?;
         let time = oscillator.time_unit();
         Ok(Self {
-            gain: match gain_of(searched) {
+            p: match gain_of(&plane.p) {
                 Some(SearchedGain::Velocity) => 1.0 / time,
                 Some(SearchedGain::Load) => oscillator.stiffness() / setting.sliding_point()?.mu_k,
                 None => 1.0,
             },
+            q: if plane.has_delay() { time } else { 1.0 },
             time,
         })
     }
 
     /// Converts an optimum. It is kept inside `ranges`, which rounding could leave.
     fn optimum(&self, found: &Optimum, ranges: &Ranges) -> Optimum {
-        let (gain, tau) = (ranges.gain, ranges.tau);
+        let (p, q) = (ranges.p, ranges.q);
         Optimum {
-            gain: (found.gain * self.gain).clamp(gain.0, gain.1),
-            tau: (found.tau * self.time).clamp(tau.0, tau.1),
+            p: (found.p * self.p).clamp(p.0, p.1),
+            q: (found.q * self.q).clamp(q.0, q.1),
             abscissa: found.abscissa / self.time,
             margin: found.margin / self.time,
             frequencies: found.frequencies.iter().map(|f| f / self.time).collect(),
@@ -120,11 +127,11 @@ fn gain_of(searched: &Quantity) -> Option<SearchedGain> {
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
-pub fn default_ranges(setting: &Setting, searched: &Quantity) -> Result<Ranges, ModelError> {
-    let Some(gain) = gain_of(searched) else {
-        return Ok(ranges_of_system(setting, searched));
+pub fn default_ranges(setting: &Setting, plane: &SearchPlane) -> Result<Ranges, ModelError> {
+    let Some(gain) = gain_of(&plane.p) else {
+        return Ok(ranges_of_system(setting, plane));
     };
-    let scales = Scales::of(setting, searched)?;
+    let scales = Scales::of(setting, plane)?;
     let slope = letter(setting, gain)?.fixed.b.abs();
     let gains = match gain {
         SearchedGain::Velocity => {
@@ -137,21 +144,37 @@ pub fn default_ranges(setting: &Setting, searched: &Quantity) -> Result<Ranges, 
         }
     };
     Ok(Ranges {
-        gain: scaled(gains, scales.gain),
-        tau: (0.0, PERIODS * TAU * scales.time),
+        p: scaled(gains, scales.p),
+        q: (0.0, PERIODS * TAU * scales.time),
     })
 }
 
 /// The default ranges of a search of a system from a file.
-fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
+fn ranges_of_system(setting: &Setting, plane: &SearchPlane) -> Ranges {
+    let longest = longest_delay(setting);
+    let range = |of: &Quantity| range_of(of, longest);
+    Ranges {
+        p: range(&plane.p),
+        q: range(&plane.q),
+    }
+}
+
+/// The longest delay of a search of a system from a file by default.
+#[must_use]
+pub fn longest_delay(setting: &Setting) -> f64 {
     let mut without_delay = setting.clone();
     without_delay.set(Parameter::Tau, 0.0);
     let linear = without_delay.linear().ok();
     let system = linear.and_then(|(model, _)| model.system());
     let frequencies = system.map(|system| system.frequencies_without_delay());
     let slowest = frequencies.into_iter().flatten().min_by(f64::total_cmp);
-    let longest = PERIODS * TAU / slowest.unwrap_or(1.0);
-    let gain = match searched {
+    PERIODS * TAU / slowest.unwrap_or(1.0)
+}
+
+/// The default range of a search of a system from a file over one of its parameters, or over the
+/// delay up to `longest`.
+fn range_of(searched: &Quantity, longest: f64) -> (f64, f64) {
+    match searched {
         Quantity::Own(own) => {
             let far = FARTHEST * own.default.abs().max(1.0);
             match own.ends() {
@@ -163,10 +186,6 @@ fn ranges_of_system(setting: &Setting, searched: &Quantity) -> Ranges {
         }
         Quantity::Known(Parameter::Memory) => (-MOST_MEMORY, MOST_MEMORY),
         Quantity::Known(_) => (0.0, longest),
-    };
-    Ranges {
-        gain,
-        tau: (0.0, longest),
     }
 }
 
@@ -204,20 +223,20 @@ pub(super) fn acting(setting: &Setting, searched: &Quantity) -> Setting {
     acting
 }
 
-/// The settings of fastest decay for every stable region within `ranges`. All parameters but
-/// `searched` and the delay are those of `setting`. Once `stop` is set, the answer comes soon but
-/// is meaningless.
+/// The settings of fastest decay for every stable region within `ranges`. All parameters but those
+/// of `plane` are those of `setting`. Once `stop` is set, the answer comes soon but is meaningless.
 ///
 /// ```
 /// use slipmap::answers::best::{best_settings, default_ranges};
+/// use slipmap::answers::search_plane::SearchPlane;
 /// use slipmap::model::stop::Stop;
 /// use slipmap::setting::{Parameter, Setting};
 ///
 /// let numbers = [("mu_prime", -0.3), ("tau", 1.0), ("alpha_v", -0.3)];
 /// let setting = Setting::checked(numbers, None, &[])?;
-/// let searched = Parameter::AlphaV.into();
-/// let ranges = default_ranges(&setting, &searched)?;
-/// let found = best_settings(&setting, &searched, &ranges, &Stop::default())?;
+/// let plane = SearchPlane::with_delay(Parameter::AlphaV);
+/// let ranges = default_ranges(&setting, &plane)?;
+/// let found = best_settings(&setting, &plane, &ranges, &Stop::default())?;
 /// assert!(found.overall.abscissa < 0.0, "some setting is stable");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -227,19 +246,19 @@ pub(super) fn acting(setting: &Setting, searched: &Quantity) -> Setting {
 /// the middle of the ranges.
 pub fn best_settings(
     setting: &Setting,
-    searched: &Quantity,
+    plane: &SearchPlane,
     ranges: &Ranges,
     stop: &Stop,
 ) -> Result<BestSettings, NoAnswer> {
-    let scales = Scales::of(setting, searched)?;
-    if let Some(gain) = gain_of(searched)
-        && acting(setting, searched).feedback().is_sampled()
+    let scales = Scales::of(setting, plane)?;
+    if let Some(gain) = gain_of(&plane.p)
+        && acting(setting, &plane.p).feedback().is_sampled()
     {
         let found = scales.best_of_samples(setting, gain, ranges, stop)?;
         return Ok(scales.settings(&found, ranges));
     }
-    let letter = gain_of(searched).map(|gain| letter(setting, gain));
-    let found = scales.best(letter.transpose()?, setting, searched, ranges, stop)?;
+    let letter = gain_of(&plane.p).map(|gain| letter(setting, gain));
+    let found = scales.best(letter.transpose()?, setting, plane, ranges, stop)?;
     Ok(scales.settings(&found, ranges))
 }
 
@@ -247,8 +266,8 @@ impl Scales {
     pub(super) fn search<F>(&self, family: F, ranges: &Ranges) -> Search<F> {
         Search {
             family,
-            gains: scaled(ranges.gain, 1.0 / self.gain),
-            delays: scaled(ranges.tau, 1.0 / self.time),
+            p: scaled(ranges.p, 1.0 / self.p),
+            q: scaled(ranges.q, 1.0 / self.q),
         }
     }
 
@@ -257,62 +276,66 @@ impl Scales {
         &self,
         letter: Option<Letter>,
         setting: &Setting,
-        searched: &Quantity,
+        plane: &SearchPlane,
         ranges: &Ranges,
         stop: &Stop,
     ) -> Result<Best, NoAnswer> {
         match letter {
-            Some(family) if acting(setting, searched).is_of_letter() => {
+            Some(family) if acting(setting, &plane.p).is_of_letter() => {
                 Ok(best::best(&self.search(family, ranges), stop))
             }
-            _ => self.best_of_any(setting, searched, ranges, stop),
+            _ => self.in_any(setting, plane, ranges, |search| best::best(search, stop)),
         }
     }
 
-    /// The search with any linear model.
-    fn best_of_any(
+    /// What `of` finds in the plane of any linear model.
+    pub(super) fn in_any<T>(
         &self,
         setting: &Setting,
-        searched: &Quantity,
+        plane: &SearchPlane,
         ranges: &Ranges,
-        stop: &Stop,
-    ) -> Result<Best, NoAnswer> {
+        of: impl FnOnce(&Search<General>) -> T,
+    ) -> Result<T, NoAnswer> {
         let moved = RefCell::new((setting.clone(), Evaluation::default()));
-        let set = |setting: &mut Setting, value: f64, tau: f64| {
-            setting.vary(searched, value * self.gain);
-            setting.set(Parameter::Tau, tau * self.time);
+        let set = |setting: &mut Setting, p: f64, q: f64| {
+            setting.vary(&plane.p, p * self.p);
+            setting.vary(&plane.q, q * self.q);
         };
-        let system_at = |value: f64, tau: f64| {
+        let system_at = |p: f64, q: f64| {
             let (setting, scratch) = &mut *moved.borrow_mut();
-            set(setting, value, tau);
+            set(setting, p, q);
             let (model, _) = setting.linear_in(scratch).ok()?;
             model.system()
         };
-        let mut search = self.search(
-            General {
-                system_at: &system_at,
-                lines: setting.has_lines(),
-                width: 0.0,
-            },
-            ranges,
+        let (p, q) = (
+            scaled(ranges.p, 1.0 / self.p),
+            scaled(ranges.q, 1.0 / self.q),
         );
+        let family = General {
+            system_at: &system_at,
+            across: match plane.has_delay() {
+                true => Across::Delay {
+                    lines: setting.has_lines(),
+                },
+                false => Across::Parameter {
+                    tau: setting.get(Parameter::Tau) / self.time,
+                    width: q.1 - q.0,
+                },
+            },
+            width: p.1 - p.0,
+        };
         let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
         let mut in_the_middle = setting.clone();
-        set(
-            &mut in_the_middle,
-            middle(search.gains),
-            middle(search.delays),
-        );
+        set(&mut in_the_middle, middle(p), middle(q));
         in_the_middle.searched()?;
-        search.family.width = search.gains.1 - search.gains.0;
-        Ok(best::best(&search, stop))
+        Ok(of(&Search { family, p, q }))
     }
 
     pub(super) fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
         let region = |region: &Region| BestRegion {
             ranges: Ranges {
-                gain: scaled(region.gains, self.gain),
-                tau: scaled(region.delays, self.time),
+                p: scaled(region.p, self.p),
+                q: scaled(region.q, self.q),
             },
             best: self.optimum(&region.best, ranges),
         };

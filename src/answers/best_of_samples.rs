@@ -26,7 +26,7 @@ impl Scales {
         let within = |allowed: &'static str, holds: bool| {
             ModelError::check(parameter.name(), sample_time, allowed, holds)
         };
-        let (from, to) = multiples_within(sample_time, ranges.tau);
+        let (from, to) = multiples_within(sample_time, ranges.q);
         within(
             "such that a multiple of it is in the range of delays that is searched",
             from <= to,
@@ -53,7 +53,7 @@ impl Scales {
         let one = at(1.0).ok_or(latency)?;
         let plane = SampledPlane {
             loops: GainLine::through(without, &one),
-            gains: scaled(ranges.gain, 1.0 / self.gain),
+            gains: scaled(ranges.p, 1.0 / self.p),
             multiples: (from, to),
         };
         Ok(plane.best(stop))

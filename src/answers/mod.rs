@@ -3,6 +3,7 @@
 //! - `basin`: the share of starts that end in sliding, with its error: points of a scrambled Sobol
 //!   sequence, followed and counted
 //! - `best`: best settings in physical units, the ranges searched by default
+//! - `best_delay`: the delay at which the best setting over two parameters is best
 //! - `best_of_samples`: best settings of a digital loop
 //! - `drawn_laws`: the laws that a fit allows, and for which of them a setting is stable
 //! - `margins`: margins of a setting, in its own units
@@ -10,6 +11,7 @@
 //! - `reached`: whether a motion reaches sliding by a time
 //! - `robust`: the best setting that stands errors of gain, delay and μ′
 //! - `robust_to_fit`: the setting that is most robust against the errors of a fit
+//! - `search_plane`: what is searched for best settings
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
 //! - `tally`: how many starts had which outcome, and shares of them
@@ -20,6 +22,7 @@
 
 pub mod basin;
 pub mod best;
+pub mod best_delay;
 mod best_of_samples;
 pub mod drawn_laws;
 pub mod margins;
@@ -28,6 +31,7 @@ pub mod reached;
 mod robust;
 pub mod robust_to_fit;
 pub mod samples;
+pub mod search_plane;
 mod sobol;
 mod tally;
 pub mod trace;

@@ -2,6 +2,7 @@
 
 use super::best::{BestSettings, Ranges, Scales, acting, letter};
 use super::margins::beyond_letter;
+use super::search_plane::SearchPlane;
 use crate::linear::best::{self, Best, Place, Rig, Robust, Search, SearchedGain};
 use crate::linear::margins::Changes;
 use crate::model::stop::Stop;
@@ -44,16 +45,17 @@ impl RobustSearch {
         ranges: &Ranges,
         stop: &Stop,
     ) -> Result<Self, NoAnswer> {
-        let searched = parameter_of(gain).into();
-        acting(setting, &searched).check_continuous(NOT_ROBUST)?;
-        let scales = Scales::of(setting, &searched)?;
+        let plane = SearchPlane::with_delay(parameter_of(gain));
+        let acting = acting(setting, &plane.p);
+        acting.check_continuous(NOT_ROBUST)?;
+        let scales = Scales::of(setting, &plane)?;
         setting.check_of_letter(&[], "")?;
         let letter = letter(setting, gain)?;
-        let found = scales.best(Some(letter), setting, &searched, ranges, stop)?;
+        let found = scales.best(Some(letter), setting, &plane, ranges, stop)?;
         let rig = Rig {
             letter,
             // Also where the gains of `setting` are 0: they are searched.
-            beyond: beyond_letter(&acting(setting, &searched), &setting.oscillator()?),
+            beyond: beyond_letter(&acting, &setting.oscillator()?),
         };
         Ok(Self {
             search: scales.search(rig, ranges),
@@ -107,15 +109,15 @@ impl Scales {
         stop: &Stop,
     ) -> RobustSetting {
         let best = Place {
-            gain: found.overall.gain,
-            tau: found.overall.tau,
+            p: found.overall.p,
+            q: found.overall.q,
         };
         let (worst, proved) = best::worst_around(search, best, spread, stop);
         RobustSetting {
             spread,
             robust: Robust {
-                gain: robust.gain * self.gain,
-                tau: robust.tau * self.time,
+                gain: robust.gain * self.p,
+                tau: robust.tau * self.q,
                 abscissa: robust.abscissa / self.time,
                 worst_abscissa: robust.worst_abscissa / self.time,
                 ..*robust

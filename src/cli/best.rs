@@ -2,33 +2,33 @@
 
 use std::path::PathBuf;
 
-use crate::answers::best::{Ranges, default_ranges};
+use crate::answers::best::{Ranges, default_ranges, longest_delay};
+use crate::answers::search_plane::SearchPlane;
 use crate::explore::best::{Control, NotFound, Recommended, Searched};
 use crate::explore::best_answer::{BestAnswer, BestSetting, SystemBest};
 use crate::explore::robust::{MayBeOff, NotRobust, Spread};
 use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::report::numbers::rounded;
-use crate::setting::amount::Amount;
 use crate::setting::point_file::PointOf;
 use crate::setting::quantity::Quantity;
 use crate::setting::system::SystemModel;
 use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::nearest::did_you_mean;
-use crate::text::{Shown, SpecError, words};
+use crate::text::{SpecError, words};
 
 use super::asked::Asked;
-use super::asks::AtAnyDelay;
+use super::best_ranges::RangeArgs;
 use super::best_text;
 use super::cell::alone;
 use super::failure::Failure;
 use super::inputs_line;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_beyond_curve;
-use super::parameter_values::{amount_of, parse_amount};
 use super::parameters::ParameterArgs;
 use super::say::{self, ForPeople};
+use super::sets::given_twice;
 use super::setting;
 use super::sweep_file::read_setting;
 use super::system_args::{OTHERS, SystemArgs};
@@ -43,41 +43,18 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that \
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs<AtAnyDelay>,
+    parameters: ParameterArgs,
     #[command(flatten)]
     system: SystemArgs,
-    /// With --system: the parameter of it that is searched beside the delay
+    /// With --system: the parameter of it that is searched beside the delay; given twice, two
+    /// parameters at the delay --tau, or beside the delay where no --tau is given
     #[arg(long, value_name = "NAME", requires = "system")]
-    search: Option<String>,
+    search: Vec<String>,
     /// The gain that is searched; the other one is given as usual [default: velocity]
     #[arg(long, value_enum)]
     control: Option<Control>,
-    /// Smallest gain to search, or smallest value of --search
-    #[arg(
-        long,
-        visible_alias = "search-from",
-        allow_hyphen_values = true,
-        value_name = "A",
-        value_parser = parse_amount
-    )]
-    alpha_from: Option<Amount>,
-    /// Largest gain to search, or largest value of --search
-    #[arg(
-        long,
-        visible_alias = "search-to",
-        allow_hyphen_values = true,
-        value_name = "A",
-        value_parser = parse_amount
-    )]
-    alpha_to: Option<Amount>,
-    /// Shortest delay to search
-    #[arg(long, allow_hyphen_values = true, value_name = "T",
-          value_parser = amount_of(Parameter::Tau))]
-    tau_from: Option<Amount>,
-    /// Longest delay to search
-    #[arg(long, allow_hyphen_values = true, value_name = "T",
-          value_parser = amount_of(Parameter::Tau))]
-    tau_to: Option<Amount>,
+    #[command(flatten)]
+    ranges: RangeArgs,
     /// Also find the setting of a block, whatever its feedback has, whose slowest decay is fastest
     /// when gain, delay and μ′ may all be off by this part of them, such as 0.05; or, with `fit`,
     /// when friction may be off by three standard errors of the fit in --setting
@@ -97,20 +74,22 @@ pub(super) struct Args {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let (asked, searched) = match args.system.system {
+    let (asked, plane) = match args.system.system {
         Some(_) => args.asked_of_system()?,
         None => args.asked_of_block()?,
     };
-    let default = default_ranges(&asked.setting, &searched)?;
-    let ranges = args.ranges(&asked, &searched, &default)?;
+    let default = default_ranges(&asked.setting, &plane)?;
+    let ranges = args.ranges.of_plane(&asked, &plane, &default)?;
+    let delays = args.delays(&asked, &plane)?;
     args.parameters.tell_static_friction("v_c depends on it");
     let named = asked.named;
     let told = Recommended::of(
         Searched {
             setting: asked.setting,
             units: asked.units,
-            of: searched,
+            of: plane,
             ranges,
+            delays,
             robust: args.robust,
         },
         &Stop::default(),
@@ -125,7 +104,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     } else {
         let mut out = ForPeople::begin();
         let mut searched = vec![Parameter::Tau];
-        searched.extend(told.searched.known());
+        searched.extend(told.searched.p.known());
         inputs_line::print(&mut out, setting, units, &searched)?;
         best_text::print(&mut out, &told)?;
     }
@@ -156,8 +135,8 @@ impl Args {
         self.control.unwrap_or(Control::Velocity)
     }
 
-    /// The block, and the gain that is searched.
-    fn asked_of_block(&self) -> Result<(Asked, Quantity), Failure> {
+    /// The block, and the plane that is searched.
+    fn asked_of_block(&self) -> Result<(Asked, SearchPlane), Failure> {
         if let Some(path) = &self.save {
             setting::check_save(path)?;
         }
@@ -177,7 +156,7 @@ impl Args {
             units,
             named: None,
         };
-        Ok((asked, gain.into()))
+        Ok((asked, SearchPlane::with_delay(gain)))
     }
 
     /// The block without its delay and the gain that is searched, from a file or flags, and its
@@ -199,8 +178,8 @@ impl Args {
         Ok((point.setting, point.units))
     }
 
-    /// The system from a file, and the parameter of it that is searched.
-    fn asked_of_system(&self) -> Result<(Asked, Quantity), Failure> {
+    /// The system from a file, and the plane that is searched.
+    fn asked_of_system(&self) -> Result<(Asked, SearchPlane), Failure> {
         let flags = self.parameters.any_but_units(&OTHERS);
         alone("--system", flags || self.control.is_some())?;
         self.parameters.refuse_units()?;
@@ -223,98 +202,100 @@ impl Args {
         let (sets, units) = (self.parameters.sets(), self.parameters.units());
         let asked = self.system.read_but_delay(sets, &units, flag)?;
         let asked = asked.ok_or_else(|| Failure::bad_input("--system is not given"))?;
-        let searched = self.searched(&asked.setting)?;
+        let plane = self.plane(&asked.setting)?;
         let delay = !asked.setting.get(Parameter::Tau).is_nan();
-        let name = searched.name();
-        let known = searched.known().and_then(flag).is_some();
-        let fixed = [
-            (delay, "tau"),
-            (known || self.parameters.sets().has(name), name),
-        ];
-        if let Some((_, fixed)) = fixed.into_iter().find(|(given, _)| *given) {
+        let given = |of: &Quantity| match *of == Parameter::Tau {
+            true => delay,
+            false => of.known().and_then(flag).is_some() || self.parameters.sets().has(of.name()),
+        };
+        let delay_twice = delay && self.ranges.has_delay();
+        let tau = Parameter::Tau.into();
+        let fixed = [&plane.q, &plane.p].into_iter().find(|of| given(of));
+        if let Some(fixed) = fixed.or(delay_twice.then_some(&tau)) {
             return Err(Failure::bad_input_with_help(
-                format!("a value of {fixed} is given, which is searched"),
+                format!("a value of {} is given, which is searched", fixed.name()),
                 "leave it out; --search-from, --search-to, --tau-from and --tau-to are the \
                  ranges of the search",
             ));
         }
-        Ok((asked, searched))
+        Ok((asked, plane))
     }
 
-    /// The parameter that `--search` names; where the system has one alone, that one.
-    fn searched(&self, setting: &Setting) -> Result<Quantity, Failure> {
+    /// The delays that are searched where they are none of the plane; none where one is given.
+    fn delays(&self, asked: &Asked, plane: &SearchPlane) -> Result<Option<(f64, f64)>, Failure> {
+        if plane.has_delay() || !asked.setting.get(Parameter::Tau).is_nan() {
+            return Ok(None);
+        }
+        let longest = longest_delay(&asked.setting);
+        self.ranges.of_delay(asked, (0.0, longest)).map(Some)
+    }
+
+    /// The plane of the parameters that `--search` names; where the system has one alone, of that
+    /// one and the delay.
+    fn plane(&self, setting: &Setting) -> Result<SearchPlane, Failure> {
         let mut all = setting.system().map_or(vec![], SystemModel::quantities);
         all.retain(|of| *of != Parameter::Tau);
         let names: Vec<&str> = all.iter().map(Quantity::name).collect();
         let listed = names.join(", ");
-        let found = match (&self.search, &*all) {
-            (Some(name), _) => all.iter().find(|of| words::same(of.name(), name)),
-            (None, [alone]) => Some(alone),
-            (None, _) => None,
+        let named = |name: &String| {
+            let found = all.iter().find(|of| words::same(of.name(), name)).cloned();
+            found.ok_or_else(|| {
+                let meant = did_you_mean(name, names.iter().copied());
+                Failure::bad_input_with_help(
+                    format!("--search: the system has no parameter {name}"),
+                    format!("{meant}its parameters: {listed}"),
+                )
+            })
         };
-        found.cloned().ok_or_else(|| match &self.search {
-            Some(name) => Failure::bad_input_with_help(
-                format!("--search: the system has no parameter {name}"),
-                format!("{}its parameters: {listed}", did_you_mean(name, names)),
-            ),
-            None => Failure::bad_input_with_help(
+        match (&*self.search, &*all) {
+            ([], [alone]) => Ok(SearchPlane::with_delay(alone)),
+            ([], _) => Err(Failure::bad_input_with_help(
                 "--search is not given: which parameter is searched beside the delay",
                 format!("parameters of the system: {listed}"),
-            ),
-        })
-    }
-
-    /// The ranges that the flags give, over those searched by default.
-    fn ranges(
-        &self,
-        asked: &Asked,
-        searched: &Quantity,
-        default: &Ranges,
-    ) -> Result<Ranges, Failure> {
-        let value = |of: &Quantity, flag: &'static str, end: &Option<Amount>| {
-            let value = end.as_ref().map(|end| asked.value(of, flag, end));
-            Ok((flag, value.transpose()?))
-        };
-        let [from, to] = match asked.named {
-            None => ["--alpha-from", "--alpha-to"],
-            Some(_) => ["--search-from", "--search-to"],
-        };
-        let tau = Parameter::Tau.into();
-        let gain = [
-            value(searched, from, &self.alpha_from),
-            value(searched, to, &self.alpha_to),
-        ];
-        let tau = [
-            value(&tau, "--tau-from", &self.tau_from),
-            value(&tau, "--tau-to", &self.tau_to),
-        ];
-        Ok(Ranges {
-            gain: range(gain, default.gain)?,
-            tau: range(tau, default.tau)?,
-        })
+            )),
+            ([one], _) => Ok(SearchPlane::with_delay(named(one)?)),
+            ([one, other], _) => {
+                let (p, q) = (named(one)?, named(other)?);
+                match p == q {
+                    true => Err(given_twice(&format!("--search {}", p.name()))),
+                    false => Ok(SearchPlane { p, q }),
+                }
+            }
+            _ => Err(Failure::bad_input_with_help(
+                "--search: at most two parameters are searched beside the delay",
+                "give the others by --set NAME=VALUE",
+            )),
+        }
     }
 
     fn inputs(&self, named: Option<(&'static str, String)>, told: &Recommended) -> Inputs {
-        let Ranges { gain, tau } = told.ranges;
+        let (of, Ranges { p, q }) = (&told.searched, told.ranges);
+        let tau = told.setting.get(Parameter::Tau);
+        let delays = match of.has_delay() {
+            true => q,
+            false => told.delays.unwrap_or((tau, tau)),
+        };
         let asked = Asked {
             setting: told.setting.clone(),
             units: told.units.clone(),
             named,
         };
-        let name = told.searched.name();
-        let given = |of: &str| of != name && of != Parameter::Tau.name();
+        let given = |name: &str| !of.has(name) && name != Parameter::Tau.name();
         let inputs = asked.inputs(given);
-        let inputs = inputs.and("tau_from", tau.0).and("tau_to", tau.1);
+        let inputs = inputs.and("tau_from", delays.0).and("tau_to", delays.1);
         match asked.named {
             None => inputs
                 .and("control", self.control())
-                .and("alpha_from", gain.0)
-                .and("alpha_to", gain.1)
+                .and("alpha_from", p.0)
+                .and("alpha_to", p.1)
                 .and("robust", self.robust),
             Some(_) => inputs
-                .and("search", name)
-                .and("search_from", gain.0)
-                .and("search_to", gain.1),
+                .and("search", of.p.name())
+                .and("search_from", p.0)
+                .and("search_to", p.1)
+                .and("second", of.second().map(Quantity::name))
+                .and("second_from", of.second().map(|_| q.0))
+                .and("second_to", of.second().map(|_| q.1)),
         }
     }
 }
@@ -345,27 +326,4 @@ impl From<NotFound> for Failure {
             NotFound::Robust(why) => Self::of_input(why.told()),
         }
     }
-}
-
-/// A flag, and the value that it gives.
-type Given = Result<(&'static str, Option<f64>), Failure>;
-
-/// The range that two flags give, with the ends of `default` where they give none.
-fn range([from, to]: [Given; 2], default: (f64, f64)) -> Result<(f64, f64), Failure> {
-    let ((from_flag, from), (to_flag, to)) = (from?, to?);
-    let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));
-    if low <= high {
-        return Ok((low, high));
-    }
-    let origin = |given: Option<f64>| given.map_or(", its default", |_| "");
-    Err(Failure::bad_input_with_help(
-        format!(
-            "{from_flag} {}{} is above {to_flag} {}{}",
-            Shown(low),
-            origin(from),
-            Shown(high),
-            origin(to)
-        ),
-        format!("{from_flag} must be at most {to_flag}"),
-    ))
 }

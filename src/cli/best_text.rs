@@ -8,6 +8,7 @@ use crate::explore::point::{BlockPoint, Point, SystemPoint};
 use crate::explore::robust::MayBeOff;
 use crate::linear::best::Optimum;
 use crate::report::numbers::{counted, rounded, unit_behind};
+use crate::setting::quantity::Quantity;
 use crate::setting::{Field, Parameter};
 use crate::text::finite;
 
@@ -53,13 +54,7 @@ fn yes_or_no(certified: bool) -> &'static str {
 
 /// Prints what was found for people.
 pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result<()> {
-    let Recommended {
-        units,
-        searched,
-        found,
-        ranges,
-        ..
-    } = told;
+    let Recommended { units, found, .. } = told;
     if let Some(may_be_off) = told.may_be_off {
         print_robust(out, may_be_off, told)?;
     }
@@ -77,12 +72,7 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
         writeln!(out, "{has}{}", nothing_decays(!found.regions.is_empty()))?;
     }
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let gain = unit_behind(&searched.unit(units));
-    row(searched.name(), short(best.gain) + &gain)?;
-    row("tau", short(best.tau) + &time)?;
-    if let Some((name, speed, unit)) = speed_at(&told.setting, units, best.tau) {
-        row(name, format!("{} {unit}", short(speed)))?;
-    }
+    print_place(told, &mut row)?;
     let unit = |field: Field| unit_behind(&field.unit(units));
     row(
         Field::Abscissa.name(),
@@ -98,18 +88,51 @@ pub(super) fn print(out: &mut impl Write, told: &Recommended) -> std::io::Result
         Point::Block(point) => print_block(point, told, &mut row)?,
         Point::System(point) => print_system(point, told, &mut row)?,
     }
-    let range = |(from, to): (f64, f64), unit: &str| {
-        format!("{}{unit} to {}{unit}", short(from), short(to))
-    };
-    let (of_gain, of_tau) = (range(ranges.gain, &gain), range(ranges.tau, &time));
-    let text = format!("{} {of_gain}, tau {of_tau}", searched.name());
-    row("searched", text)?;
+    row("searched", ranges_of(told))?;
     let Point::Block(point) = &told.point else {
         return print_regions(out, told);
     };
     tell_dimensionless(out, units)?;
     print_regions(out, told)?;
     print_recommended(out, told, point)
+}
+
+/// What was searched, at its best.
+fn print_place(
+    told: &Recommended,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let (units, searched, best) = (&told.units, &told.searched, &told.found.overall);
+    let with_unit = |of: &Quantity, value: f64| short(value) + &unit_behind(&of.unit(units));
+    row(searched.p.name(), with_unit(&searched.p, best.p))?;
+    if let Some(second) = searched.second() {
+        row(second.name(), with_unit(second, best.q))?;
+    }
+    let tau = match searched.has_delay() {
+        true => best.q,
+        false => told.setting.get(Parameter::Tau),
+    };
+    row("tau", short(tau) + &unit_behind(&units.time()))?;
+    match speed_at(&told.setting, units, tau) {
+        Some((name, speed, unit)) => row(name, format!("{} {unit}", short(speed))),
+        None => Ok(()),
+    }
+}
+
+/// The ranges of the search in words.
+fn ranges_of(told: &Recommended) -> String {
+    let (searched, ranges) = (&told.searched, &told.ranges);
+    let range = |of: &Quantity, (from, to): (f64, f64)| {
+        let unit = unit_behind(&of.unit(&told.units));
+        let (name, from, to) = (of.name(), short(from), short(to));
+        format!("{name} {from}{unit} to {to}{unit}")
+    };
+    let plane = [range(&searched.p, ranges.p), range(&searched.q, ranges.q)];
+    let delays = told
+        .delays
+        .map(|delays| range(&Parameter::Tau.into(), delays));
+    let all: Vec<String> = plane.into_iter().chain(delays).collect();
+    all.join(", ")
 }
 
 /// What is told of the block besides its optimum.
@@ -128,7 +151,7 @@ fn print_block(
     };
     row("mu_prime", with(Parameter::MuPrime, point.mu_prime))?;
     row("mu_k", short(point.mu_k))?;
-    let (other, value) = match Control::of(&told.searched) {
+    let (other, value) = match Control::of(&told.searched.p) {
         Control::Velocity => (Parameter::AlphaN, point.alpha_n),
         Control::Load => (Parameter::AlphaV, point.alpha_v),
     };
@@ -143,15 +166,15 @@ fn print_system(
 ) -> std::io::Result<()> {
     let units = &told.units;
     let time = unit_behind(&units.time());
-    let searched = told.searched.name();
-    for (own, value) in told.setting.own().filter(|(own, _)| own.name != searched) {
+    let searched = |name: &str| told.searched.has(name);
+    for (own, value) in told.setting.own().filter(|(own, _)| !searched(&own.name)) {
         row(&own.name, short(value) + &unit_behind(&own.unit))?;
     }
     for (parameter, value) in [
         (Parameter::Memory, point.memory),
         (Parameter::Latency, point.latency),
     ] {
-        if let Some(value) = value.filter(|_| parameter.name() != searched) {
+        if let Some(value) = value.filter(|_| !searched(parameter.name())) {
             let unit = unit_behind(&units.of_parameter(parameter));
             row(parameter.name(), short(value) + &unit)?;
         }
@@ -197,8 +220,8 @@ fn print_robust(
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let found = &of.robust;
     row(
-        told.searched.name(),
-        short(found.gain) + &unit_behind(&told.searched.unit(&told.units)),
+        told.searched.p.name(),
+        short(found.gain) + &unit_behind(&told.searched.p.unit(&told.units)),
     )?;
     row("tau", short(found.tau) + &time)?;
     let abscissa = match found.abscissa.is_finite() {
@@ -277,7 +300,12 @@ fn print_regions(out: &mut impl Write, told: &Recommended) -> std::io::Result<()
     if optima.peek().is_none() {
         return Ok(());
     }
-    writeln!(out, "the best setting of every stable region, by delay")?;
+    let (p, q) = (&told.searched.p, &told.searched.q);
+    let by = match told.searched.has_delay() {
+        true => "delay",
+        false => q.name(),
+    };
+    writeln!(out, "the best setting of every stable region, by {by}")?;
     let mut line = |cells: [&str; 6]| {
         let [value, tau, time, frequency, certified, kind] = cells;
         let text =
@@ -285,22 +313,23 @@ fn print_regions(out: &mut impl Write, told: &Recommended) -> std::io::Result<()
         writeln!(out, "{}", text.trim_end())
     };
     line([
-        told.searched.name(),
-        "tau",
+        p.name(),
+        q.name(),
         "relaxation_time",
         "frequency",
         "certified",
         "kind",
     ])?;
     if !units.dimensionless() {
-        let (gain, tau) = (unit_behind(&told.searched.unit(units)), units.time());
-        line([gain.trim(), &tau, &tau, &units.angular_frequency(), "", ""])?;
+        let [of_p, of_q] = [p, q].map(|of| unit_behind(&of.unit(units)));
+        let (time, frequency) = (units.time(), units.angular_frequency());
+        line([of_p.trim(), of_q.trim(), &time, &frequency, "", ""])?;
     }
     for best in optima {
         let time = best.relaxation_time().map_or("none".into(), short);
         line([
-            &short(best.gain),
-            &short(best.tau),
+            &short(best.p),
+            &short(best.q),
             &time,
             &frequency_of(best, ""),
             yes_or_no(best.certified),

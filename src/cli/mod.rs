@@ -8,6 +8,7 @@
 //! - `axis_facts`: the facts of an axis, for a sweep and for a map
 //! - `basin`: `slipmap basin`: its starts and its output
 //! - `best`: `slipmap best`
+//! - `best_ranges`: the flags of `slipmap best` for the ranges that are searched
 //! - `best_text`: the output of `slipmap best` for people
 //! - `case_facts`: the facts of a case, before it is simulated and from its trace
 //! - `cell`: a cell of a map instead of flags or a case file
@@ -87,6 +88,7 @@ mod at;
 mod axis_facts;
 mod basin;
 mod best;
+mod best_ranges;
 mod best_text;
 mod case_facts;
 mod cell;

@@ -64,9 +64,7 @@ impl<A: Asks> ParameterArgs<A> {
         let of_slope = |p: Parameter| p.group() == Group::Sliding;
         let moves = |p: Parameter| !NOT_IN_MOTIONS.contains(&p) && !LawKind::only_with_state(p);
         let refused = |p: Parameter| (of_slope(p) && p != Parameter::MuK) || !moves(p);
-        let in_vain = (A::LAW && parameter.is_some_and(refused))
-            || (A::SEARCHES_DELAY && parameter == Some(Parameter::Tau));
-        arg.hide(in_vain)
+        arg.hide(A::LAW && parameter.is_some_and(refused))
     }
 }
 

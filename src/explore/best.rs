@@ -8,6 +8,8 @@ use super::robust::{MayBeOff, NotRobust, Spread};
 use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use crate::answers::best::{BestSettings, Ranges, RobustSetting, best_settings};
+use crate::answers::best_delay::best_over_delays;
+use crate::answers::search_plane::SearchPlane;
 use crate::linear::best::SearchedGain;
 use crate::model::ModelError;
 use crate::model::stop::Stop;
@@ -61,14 +63,16 @@ impl Control {
 /// What is searched, and where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Searched {
-    /// Everything but the delay and what is searched, whose values do not matter.
+    /// Everything but what is searched, whose values do not matter.
     pub setting: Setting,
     /// Its units.
     pub units: Units,
-    /// What is searched beside the delay.
-    pub of: Quantity,
+    /// What is searched.
+    pub of: SearchPlane,
     /// The ranges of the search.
     pub ranges: Ranges,
+    /// The delays that are searched too, where the delay is none of the plane.
+    pub delays: Option<(f64, f64)>,
     /// What the recommended setting is to stand.
     pub robust: Option<Spread>,
 }
@@ -108,10 +112,11 @@ impl Searched {
             setting: spec.fixed.clone(),
             units: spec.units.clone(),
             ranges: Ranges {
-                gain: other.range(),
-                tau: tau.range(),
+                p: other.range(),
+                q: tau.range(),
             },
-            of,
+            of: SearchPlane::with_delay(of),
+            delays: None,
             robust: robust.then_some(Spread::Part(OFF)),
         })
     }
@@ -128,10 +133,12 @@ pub struct Recommended {
     pub setting: Setting,
     /// Its units.
     pub units: Units,
-    /// What was searched beside the delay.
-    pub searched: Quantity,
+    /// What was searched.
+    pub searched: SearchPlane,
     /// The ranges of the search.
     pub ranges: Ranges,
+    /// The delays that were searched too, where the delay is none of the plane.
+    pub delays: Option<(f64, f64)>,
     /// What may be off at the robust setting, if one is requested.
     pub may_be_off: Option<MayBeOff>,
     /// The best settings.
@@ -192,26 +199,35 @@ impl Recommended {
             units,
             of: searched,
             ranges,
+            delays,
             robust,
         } = asked;
-        let (found, robust, may_be_off) = match robust {
-            None => (
-                best_settings(&setting, &searched, &ranges, stop)?,
-                None,
-                None,
-            ),
-            Some(spread) => {
-                let gain = searched.known().and_then(searched_gain);
+        let mut over_delays = None;
+        let (found, robust, may_be_off) = match (robust, delays) {
+            (None, None) => {
+                let found = best_settings(&setting, &searched, &ranges, stop)?;
+                (found, None, None)
+            }
+            (None, Some(delays)) => {
+                let found = best_over_delays(&setting, &searched, &ranges, delays, stop)?;
+                over_delays = Some(found.0);
+                (found.1, None, None)
+            }
+            (Some(spread), _) => {
+                let gain = searched.p.known().and_then(searched_gain);
                 let gain = gain.unwrap_or(SearchedGain::Velocity);
                 spread.settings(&setting, gain, &ranges, stop)?
             }
         };
-        let (value, tau) = match &robust {
+        let (p, q) = match &robust {
             Some(of) => (of.robust.gain, of.robust.tau),
-            None => (found.overall.gain, found.overall.tau),
+            None => (found.overall.p, found.overall.q),
         };
-        setting.vary(&searched, value);
-        setting.set(Parameter::Tau, tau);
+        if let Some(tau) = over_delays {
+            setting.set(Parameter::Tau, tau);
+        }
+        setting.vary(&searched.p, p);
+        setting.vary(&searched.q, q);
         let moves = setting.law().is_some() && setting.check_of_letter(NOT_IN_MOTIONS, "").is_ok();
         let vc = moves.then(|| CriticalVelocity::of(&setting, Protocol::Follow, stop));
         let vc = vc.transpose()?;
@@ -225,6 +241,7 @@ impl Recommended {
             units,
             searched,
             ranges,
+            delays,
             may_be_off,
             found,
             robust,

@@ -9,6 +9,7 @@ use super::robust::MayBeOff;
 use super::vc::CriticalVelocity;
 use crate::answers::best::{BestRegion, Ranges, RobustSetting};
 use crate::linear::best::Optimum;
+use crate::setting::Parameter;
 use crate::sweep::relaxation_time;
 
 /// What a search found.
@@ -36,12 +37,12 @@ impl BestInPlane {
     /// The answer for what was found in a plane of which these ranges are the usual ones.
     #[must_use]
     pub fn of(told: &Recommended, usual: Ranges) -> Self {
-        let Ranges { gain, tau } = usual;
+        let Ranges { p, q } = usual;
         Self {
             found: BestSetting::of(told),
             usual: UsualRanges {
-                gain: gain.into(),
-                tau: tau.into(),
+                gain: p.into(),
+                tau: q.into(),
             },
         }
     }
@@ -84,8 +85,11 @@ pub struct BestAnswer {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct SystemBest {
-    /// The parameter that is searched beside the delay.
+    /// The first parameter that is searched.
     search: String,
+    /// The second one; null where that is the delay.
+    #[cfg_attr(feature = "serve", schema(required))]
+    second: Option<String>,
     searched: SystemRanges,
     best: SystemOptimum,
     regions: Vec<SystemRegion>,
@@ -145,79 +149,143 @@ impl RobustOut {
     }
 }
 
-/// The types of ranges, regions and optima, where what is searched has the name `value`.
-macro_rules! of_searched {
-    ($ranges:ident, $region:ident, $optimum:ident, $(#[$about:meta])* $value:ident) => {
-        #[derive(Debug, Serialize)]
-        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-        struct $ranges {
-            $(#[$about])*
-            #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
-            $value: (f64, f64),
-            #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
-            tau: (f64, f64),
-        }
-
-        #[derive(Debug, Serialize)]
-        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-        struct $region {
-            region: $ranges,
-            #[serde(flatten)]
-            best: $optimum,
-        }
-
-        #[derive(Debug, Serialize)]
-        #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-        struct $optimum {
-            $(#[$about])*
-            $value: f64,
-            #[serde(flatten)]
-            numbers: OptimumNumbers,
-        }
-
-        impl From<&Ranges> for $ranges {
-            fn from(ranges: &Ranges) -> Self {
-                Self {
-                    $value: ranges.gain,
-                    tau: ranges.tau,
-                }
-            }
-        }
-
-        impl From<&BestRegion> for $region {
-            fn from(region: &BestRegion) -> Self {
-                Self {
-                    region: (&region.ranges).into(),
-                    best: (&region.best).into(),
-                }
-            }
-        }
-
-        impl From<&Optimum> for $optimum {
-            fn from(found: &Optimum) -> Self {
-                Self {
-                    $value: found.gain,
-                    numbers: found.into(),
-                }
-            }
-        }
-    };
+/// Ranges of a gain of the block and of the delay.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct RangesOut {
+    #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
+    alpha: (f64, f64),
+    #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
+    tau: (f64, f64),
 }
 
-of_searched!(RangesOut, RegionOut, OptimumOut, alpha);
-of_searched!(
-    SystemRanges,
-    SystemRegion,
-    SystemOptimum,
-    /// Of the parameter that is searched.
-    value
-);
+impl From<&Ranges> for RangesOut {
+    fn from(ranges: &Ranges) -> Self {
+        Self {
+            alpha: ranges.p,
+            tau: ranges.q,
+        }
+    }
+}
 
-/// What is told of a best setting besides the value of what is searched.
+/// A stable region of the block, with its best setting.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct RegionOut {
+    region: RangesOut,
+    #[serde(flatten)]
+    best: OptimumOut,
+}
+
+impl From<&BestRegion> for RegionOut {
+    fn from(region: &BestRegion) -> Self {
+        Self {
+            region: (&region.ranges).into(),
+            best: (&region.best).into(),
+        }
+    }
+}
+
+/// A best setting of the block.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct OptimumOut {
+    alpha: f64,
+    tau: f64,
+    #[serde(flatten)]
+    numbers: OptimumNumbers,
+}
+
+impl From<&Optimum> for OptimumOut {
+    fn from(found: &Optimum) -> Self {
+        Self {
+            alpha: found.p,
+            tau: found.q,
+            numbers: found.into(),
+        }
+    }
+}
+
+/// Ranges of the parameters of a system.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct SystemRanges {
+    /// Of the first parameter.
+    #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
+    value: (f64, f64),
+    /// Of the second one; null where that is the delay.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<[f64; 2]>, required))]
+    second: Option<(f64, f64)>,
+    /// Of the delay; both ends are the same where it is not searched.
+    #[cfg_attr(feature = "serve", schema(value_type = [f64; 2]))]
+    tau: (f64, f64),
+}
+
+/// A stable region of a system, with its best setting.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct SystemRegion {
+    region: SystemRanges,
+    #[serde(flatten)]
+    best: SystemOptimum,
+}
+
+/// A best setting of a system.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+struct SystemOptimum {
+    /// Of the first parameter.
+    value: f64,
+    /// Of the second one; null where that is the delay.
+    #[cfg_attr(feature = "serve", schema(required))]
+    second: Option<f64>,
+    tau: f64,
+    #[serde(flatten)]
+    numbers: OptimumNumbers,
+}
+
+impl SystemBest {
+    fn of(told: &Recommended, point: &SystemPoint) -> Self {
+        let (of, found) = (&told.searched, &told.found);
+        let tau = told.setting.get(Parameter::Tau);
+        let ranges = |of_them: &Ranges, delays: (f64, f64)| match of.has_delay() {
+            true => SystemRanges {
+                value: of_them.p,
+                second: None,
+                tau: of_them.q,
+            },
+            false => SystemRanges {
+                value: of_them.p,
+                second: Some(of_them.q),
+                tau: delays,
+            },
+        };
+        let optimum = |best: &Optimum| SystemOptimum {
+            value: best.p,
+            second: of.second().map(|_| best.q),
+            tau: if of.has_delay() { best.q } else { tau },
+            numbers: best.into(),
+        };
+        let region = |region: &BestRegion| SystemRegion {
+            region: ranges(&region.ranges, (tau, tau)),
+            best: optimum(&region.best),
+        };
+        Self {
+            search: of.p.name().to_owned(),
+            second: of.second().map(|second| second.name().to_owned()),
+            searched: ranges(&told.ranges, told.delays.unwrap_or((tau, tau))),
+            best: optimum(&found.overall),
+            regions: found.regions.iter().map(region).collect(),
+            regions_left_out: found.regions_left_out,
+            point: point.clone(),
+        }
+    }
+}
+
+/// What is told of a best setting besides the values of what is searched.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct OptimumNumbers {
-    tau: f64,
     abscissa: f64,
     frequency: f64,
     frequencies: Vec<f64>,
@@ -232,7 +300,6 @@ struct OptimumNumbers {
 impl From<&Optimum> for OptimumNumbers {
     fn from(found: &Optimum) -> Self {
         Self {
-            tau: found.tau,
             abscissa: found.abscissa,
             frequency: found.frequency(),
             frequencies: found.frequencies.clone(),
@@ -253,7 +320,7 @@ impl BestSetting {
             Point::Block(point) => Self::Block(Box::new(BestAnswer {
                 mu_prime: point.mu_prime,
                 mu_k: point.mu_k,
-                control: Control::of(&told.searched),
+                control: Control::of(&told.searched.p),
                 searched: (&told.ranges).into(),
                 best: (&found.overall).into(),
                 regions: found.regions.iter().map(Into::into).collect(),
@@ -265,14 +332,7 @@ impl BestSetting {
                 margins: point.margins.clone(),
                 vc: told.vc.clone(),
             })),
-            Point::System(point) => Self::System(Box::new(SystemBest {
-                search: told.searched.name().to_owned(),
-                searched: (&told.ranges).into(),
-                best: (&found.overall).into(),
-                regions: found.regions.iter().map(Into::into).collect(),
-                regions_left_out: found.regions_left_out,
-                point: (**point).clone(),
-            })),
+            Point::System(point) => Self::System(Box::new(SystemBest::of(told, point))),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::LetterError;
 use super::claim::{Claim, ClaimValue, Verdict};
 use super::workshop::Workshop;
 use crate::answers::best::{best_settings, default_ranges};
+use crate::answers::search_plane::SearchPlane;
 use crate::linear::best::SearchedGain;
 use crate::linear::certificate::UnstableCount;
 use crate::linear::characteristic::{characteristic, unstable_root_bound};
@@ -242,14 +243,14 @@ impl Relaxation {
                 shop.step(&format!("the fastest decay under {control} at {mu_prime}"))?;
                 let mut setting = Setting::new(None);
                 setting.set(Parameter::MuPrime, mu_prime);
-                let searched = parameter_of(gain).into();
-                let ranges = default_ranges(&setting, &searched)?;
-                let found = best_settings(&setting, &searched, &ranges, &shop.stop())
+                let plane = SearchPlane::with_delay(parameter_of(gain));
+                let ranges = default_ranges(&setting, &plane)?;
+                let found = best_settings(&setting, &plane, &ranges, &shop.stop())
                     .map_err(crate::model::ModelError::from)?;
                 for (what, positive) in names(gain) {
                     let same = found.regions.iter().map(|region| &region.best);
-                    let same = same.filter(|best| (best.gain > 0.0) == positive);
-                    let best = same.filter_map(|best| Some((best.tau, best.relaxation_time()?)));
+                    let same = same.filter(|best| (best.p > 0.0) == positive);
+                    let best = same.filter_map(|best| Some((best.q, best.relaxation_time()?)));
                     let mut best: Vec<_> = best.collect();
                     best.sort_by(|one, other| one.0.total_cmp(&other.0));
                     if best.len() > 1 {

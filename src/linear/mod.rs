@@ -33,7 +33,7 @@
 //! - `real_zeros`: all zeros of a real function of the frequency
 //! - [`response`]: the response of a system in time
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
-//! - `roots`: bisection
+//! - `roots`: bisection, golden sections
 //! - `rounded`: numbers with a bound on their rounding error
 //! - [`sampled`]: the block under a digital loop
 //! - `sensitivity`: derivatives of a root with respect to the groups and the delay

@@ -1,5 +1,5 @@
-//! Bisection, to find where scalar conditions change. Every use evaluates a smooth closed form a
-//! few dozen times in all, and bisection cannot fail.
+//! Bisection, to find where scalar conditions change, and golden sections, to find where a function
+//! is smallest. Every use evaluates a function a few dozen times in all, and neither can fail.
 
 /// The root of `f` in [`lo`, `hi`], where f(lo) and f(hi) differ in sign, to the last bit that
 /// bisection resolves.
@@ -27,5 +27,48 @@ pub(crate) fn narrowed(
         } else {
             to = middle;
         }
+    }
+}
+
+/// A local minimum of `f` in [`low`, `high`] after so many golden sections: where it is, and the
+/// value there.
+pub(crate) fn golden_section(
+    (mut low, mut high): (f64, f64),
+    sections: u32,
+    f: impl FnMut(f64) -> f64,
+) -> (f64, f64) {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let mut f = f;
+    let mut at = |x: f64| (x, f(x));
+    let mut left = at(high - golden * (high - low));
+    let mut right = at(low + golden * (high - low));
+    for _ in 0..sections {
+        if left.1 <= right.1 {
+            high = low + golden * (high - low);
+            right = left;
+            left = at(high - golden * (high - low));
+        } else {
+            low = high - golden * (high - low);
+            left = right;
+            right = at(low + golden * (high - low));
+        }
+    }
+    if left.1 <= right.1 { left } else { right }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn golden_sections_come_to_a_minimum() {
+        let (at, value) = golden_section((-1.0, 4.0), 60, |x| (x - 0.3).abs() - 2.0);
+        assert!(
+            (at - 0.3).abs() < 1e-11 && (value + 2.0).abs() < 1e-11,
+            "{at} {value}"
+        );
+        // The function falls to the end of the range.
+        let (at, _) = golden_section((0.0, 1.0), 40, |x| -x);
+        assert!((at - 1.0).abs() < 1e-8, "{at}");
     }
 }

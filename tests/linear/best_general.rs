@@ -7,7 +7,7 @@ use crate::letter_system::letter;
 use crate::program::{self, Folder, err, out};
 use crate::walk::Walk;
 use serde_json::Value;
-use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
+use slipmap::linear::best::{Across, Best, General, Letter, Optimum, Search, SearchedGain, best};
 use slipmap::linear::general::{Polynomial, System};
 use slipmap::model::stop::Stop;
 use slipmap::model::{Channel, Dashpots, Groups};
@@ -36,8 +36,8 @@ fn the_letter_by_both_ways() {
         let one = best(
             &Search {
                 family,
-                gains,
-                delays,
+                p: gains,
+                q: delays,
             },
             &Stop::default(),
         );
@@ -46,11 +46,11 @@ fn the_letter_by_both_ways() {
             &Search {
                 family: General {
                     system_at: &system_at,
-                    lines: true,
+                    across: Across::Delay { lines: true },
                     width: gains.1 - gains.0,
                 },
-                gains,
-                delays,
+                p: gains,
+                q: delays,
             },
             &Stop::default(),
         );
@@ -199,11 +199,11 @@ impl Problem {
             &Search {
                 family: General {
                     system_at: &system_at,
-                    lines: true,
+                    across: Across::Delay { lines: true },
                     width: self.gains.1 - self.gains.0,
                 },
-                gains: self.gains,
-                delays: self.delays,
+                p: self.gains,
+                q: self.delays,
             },
             &Stop::default(),
         )
@@ -228,8 +228,8 @@ fn one_root_followed_twice_certifies_nothing() {
         delays: (0.05, 3.132_738_196_764_114_6),
     };
     let Optimum {
-        gain,
-        tau,
+        p: gain,
+        q: tau,
         abscissa,
         certified,
         ..
@@ -250,8 +250,8 @@ fn nothing_is_better_by_a_walk() {
         let problem = Problem::by_chance(&mut chance);
         let found = problem.best().overall;
         let Optimum {
-            gain,
-            tau,
+            p: gain,
+            q: tau,
             abscissa,
             margin,
             ..

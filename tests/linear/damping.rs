@@ -232,7 +232,7 @@ fn best_settings_are_along_the_physical_gains() {
         let cells = &grid.cells.columns[0].cells;
         let least = cells.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(best.abscissa < least && least < 0.0, "{best:?} {least}");
-        let numbers = numbers_at(&grid, gain, best.gain, best.tau);
+        let numbers = numbers_at(&grid, gain, best.p, best.q);
         let s = Complex64::new(best.abscissa, best.frequencies[0]);
         // At the best setting two roots may be one: errors are square roots.
         assert!((zero(&numbers, false, s) - s).norm() < 1e-5, "{best:?}");

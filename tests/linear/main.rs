@@ -27,6 +27,8 @@ mod winding;
 mod at_origin;
 #[cfg(feature = "cli")]
 mod best_general;
+#[cfg(feature = "cli")]
+mod best_of_gains;
 #[cfg(feature = "explore")]
 mod beyond_letter;
 #[cfg(feature = "sweep")]

@@ -35,8 +35,8 @@ fn problems(number: u32) -> impl Iterator<Item = (Search<Letter>, [f64; 3])> {
                 fixed: Groups::new(b, 0.0, 0.0),
                 gain,
             },
-            gains,
-            delays: (0.05, 10.0),
+            p: gains,
+            q: (0.05, 10.0),
         };
         let parts = match i % 5 {
             3 => [0.0, 0.0, 2.0],
@@ -124,7 +124,7 @@ fn check_grid(search: &Search<Letter>, spread: [f64; 3], found: Option<&Robust>)
     let along = |(from, to): (f64, f64), i: u32| from + (to - from) * f64::from(i) / 39.0;
     for i in 0..40 {
         for j in 0..40 {
-            let place = (along(search.gains, i), along(search.delays, j));
+            let place = (along(search.p, i), along(search.q, j));
             if abscissas.at(search, place, [0.0; 3]) >= lowest {
                 continue;
             }
@@ -145,8 +145,8 @@ fn robust_settings_keep_what_they_promise() {
         let regions: Best = best(&search, &stop);
         let rigs = Search {
             family: Rig::from(search.family),
-            gains: search.gains,
-            delays: search.delays,
+            p: search.p,
+            q: search.q,
         };
         let found = robust(&rigs, &regions, spread, &stop);
         check_grid(&search, spread, found.as_ref());
@@ -155,8 +155,8 @@ fn robust_settings_keep_what_they_promise() {
         check_box(&search, spread, &found);
         // Never worse than the setting of fastest decay within the same spread.
         let overall = Place {
-            gain: regions.overall.gain,
-            tau: regions.overall.tau,
+            p: regions.overall.p,
+            q: regions.overall.q,
         };
         let (worst, _) = worst_around(&rigs, overall, spread, &stop);
         assert!(

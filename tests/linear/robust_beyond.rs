@@ -4,6 +4,7 @@
 //! many settings either way of the grid.
 
 use slipmap::answers::best::{Ranges, RobustSetting, default_ranges, robust_setting};
+use slipmap::answers::search_plane::SearchPlane;
 use slipmap::linear::best::SearchedGain;
 use slipmap::model::stop::Stop;
 use slipmap::setting::{Parameter, Setting};
@@ -68,9 +69,9 @@ impl Problem {
             SearchedGain::Velocity => Parameter::AlphaV,
             SearchedGain::Load => Parameter::AlphaN,
         };
-        let ranges = default_ranges(&setting, &searched.into()).unwrap();
-        let tau = (0.02 * ranges.tau.1, 0.4 * ranges.tau.1);
-        (setting, Ranges { tau, ..ranges })
+        let ranges = default_ranges(&setting, &SearchPlane::with_delay(searched)).unwrap();
+        let q = (0.02 * ranges.q.1, 0.4 * ranges.q.1);
+        (setting, Ranges { q, ..ranges })
     }
 
     fn of(&self, name: &str) -> f64 {
@@ -189,10 +190,7 @@ fn check_grid(problem: &Problem, ranges: &Ranges, found: Option<&RobustSetting>)
         |(from, to): (f64, f64), i: u64| from + (to - from) * i as f64 / (points - 1) as f64;
     let (mut decided, mut corners) = (0, corners(problem.spread));
     for i in 0..points * points {
-        let place = (
-            along(ranges.gain, i / points),
-            along(ranges.tau, i % points),
-        );
+        let place = (along(ranges.p, i / points), along(ranges.q, i % points));
         let right = |changes: &Changes| problem.right_of(place, *changes, line);
         if let Some(slower) = corners.iter().position(|changes| right(changes) > Some(0)) {
             decided += 1;

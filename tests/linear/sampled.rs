@@ -492,8 +492,8 @@ fn no_setting_decays_faster_than_the_best() {
         let (h, search) = (plane.of.h, plane.search());
         let found = search.best(&Stop::default());
         let best = &found.overall;
-        let m = (best.tau / h).round() as u64;
-        let there = plane.abscissa(best.gain, m);
+        let m = (best.q / h).round() as u64;
+        let there = plane.abscissa(best.p, m);
         // Multiple roots are known to the root of rounding.
         let near = 1e-5 * (1.0 + there.abs());
         assert!(
@@ -519,8 +519,8 @@ fn no_setting_decays_faster_than_the_best() {
             if abscissa < -1e-6 && found.regions_left_out == 0 {
                 let tau = m as f64 * h;
                 let in_region = found.regions.iter().any(|region| {
-                    let (shortest, longest) = region.delays;
-                    inside(&region.gains) && shortest < tau + 1e-9 && tau < longest + 1e-9
+                    let (shortest, longest) = region.q;
+                    inside(&region.p) && shortest < tau + 1e-9 && tau < longest + 1e-9
                 });
                 assert!(in_region, "{number}: {gain} {m}");
             }
@@ -533,10 +533,7 @@ fn no_setting_decays_faster_than_the_best() {
         for _ in 0..40 {
             let part = (2.0 * chance.unit() - 1.0) * 0.05 * (to - from);
             let m = (m + 1).saturating_sub((3.0 * chance.unit()) as u64);
-            try_at(
-                (best.gain + part).clamp(from, to),
-                m.clamp(1, plane.multiples),
-            );
+            try_at((best.p + part).clamp(from, to), m.clamp(1, plane.multiples));
         }
     }
 }
@@ -558,7 +555,7 @@ fn the_best_setting_of_short_samples_is_the_continuous_one() {
         let found = search.best(&Stop::default());
         assert_eq!(found.regions.len(), 2, "{found:?}");
         assert!(found.overall.certified && found.overall.kind != Kind::Edge);
-        assert!((found.overall.gain + 0.211_636).abs() < 0.3 * h.sqrt());
+        assert!((found.overall.p + 0.211_636).abs() < 0.3 * h.sqrt());
         found.overall.abscissa + 0.206_688_968
     });
     assert!(apart[1] > 0.0 && apart[1] < 0.7 * apart[0], "{apart:?}");

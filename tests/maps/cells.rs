@@ -459,7 +459,7 @@ fn best_settings_are_those_of_the_library() {
         for (found, index) in found.iter().zip(&planes) {
             let expected = best_of_plane(&plan, index, &Stop::default()).unwrap();
             let best = &expected.overall;
-            assert_eq!((found.gain, found.tau, found.abscissa), (best.gain, best.tau, best.abscissa));
+            assert_eq!((found.gain, found.tau, found.abscissa), (best.p, best.q, best.abscissa));
             assert_eq!(found.relaxation_time, best.relaxation_time());
             assert_eq!((found.kind, found.certified), (Some(best.kind), best.certified));
             assert_eq!(found.regions, expected.regions.len() as u64);

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use slipmap::answers::best::default_ranges;
 use slipmap::answers::robust_to_fit::{error_of_fit, robust_to_fit};
+use slipmap::answers::search_plane::SearchPlane;
 use slipmap::fit::{FitError, FittedLaw, Wanted, fit};
 use slipmap::linear::best::SearchedGain;
 use slipmap::model::stop::Stop;
@@ -75,7 +76,7 @@ fn errors_of_the_slope_are_as_large_as_they_say() {
 fn is_stable_in_truth(setting: &Setting) -> bool {
     let (gain, alpha, stop) = (SearchedGain::Velocity, Parameter::AlphaV, Stop::default());
     let error = error_of_fit(setting, gain).unwrap().expect("errors");
-    let ranges = default_ranges(setting, &alpha.into()).unwrap();
+    let ranges = default_ranges(setting, &SearchPlane::with_delay(alpha)).unwrap();
     let found = robust_to_fit(setting, gain, &ranges, error, &stop).unwrap();
     let Some(found) = found.robust else {
         return false;

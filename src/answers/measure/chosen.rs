@@ -3,6 +3,7 @@
 use super::foreseen::{Experiment, Prospect};
 use crate::answers::best::{best_settings, default_ranges};
 use crate::answers::robust::{RobustSearch, RobustSetting};
+use crate::answers::search_plane::SearchPlane;
 use crate::answers::vc::VcProblem;
 use crate::critical::CriticalWindows;
 use crate::linear::MarginalTolerance;
@@ -13,7 +14,6 @@ use crate::model::ModelError;
 use crate::model::stop::Stop;
 use crate::setting::best_plane::parameter_of;
 use crate::setting::no_answer::NoAnswer;
-use crate::setting::quantity::Quantity;
 use crate::setting::regime_at_v0::RegimeAtV0;
 use crate::setting::search::Protocol;
 use crate::setting::{Parameter, Setting};
@@ -96,8 +96,8 @@ impl Experiment {
     ) -> Result<Option<Candidate>, NoAnswer> {
         check_latency(setting)?;
         let searched = continuous(setting);
-        let quantity = Quantity::Known(parameter_of(gain));
-        let ranges = default_ranges(&searched, &quantity)?;
+        let plane = SearchPlane::with_delay(parameter_of(gain));
+        let ranges = default_ranges(&searched, &plane)?;
         let search = RobustSearch::of(&searched, gain, &ranges, stop)?;
         let mut first = None;
         for spread in SPREADS {
@@ -129,11 +129,11 @@ impl Experiment {
         v0: f64,
         stop: &Stop,
     ) -> Result<Option<Candidate>, NoAnswer> {
-        let quantity = Quantity::Known(parameter_of(gain));
-        let ranges = default_ranges(setting, &quantity)?;
-        let best = best_settings(setting, &quantity, &ranges, stop)?.overall;
+        let plane = SearchPlane::with_delay(parameter_of(gain));
+        let ranges = default_ranges(setting, &plane)?;
+        let best = best_settings(setting, &plane, &ranges, stop)?.overall;
         match best.relaxation_time() {
-            Some(_) => self.candidate(setting, gain, (best.gain, best.tau), v0, stop),
+            Some(_) => self.candidate(setting, gain, (best.p, best.q), v0, stop),
             None => Ok(None),
         }
     }
@@ -159,7 +159,7 @@ impl Experiment {
                 return Ok(Some(found));
             }
         }
-        self.candidate(setting, gain, (fastest.gain, fastest.tau), v0, stop)
+        self.candidate(setting, gain, (fastest.p, fastest.q), v0, stop)
     }
 
     /// A robust setting at v0 with the spread that it stands; none where sliding is not stable with

@@ -1,13 +1,13 @@
-//! What holds at a setting of fastest decay, as two equations for gain and delay.
+//! What holds at a setting of fastest decay, as two equations for p and q.
 //!
 //! The abscissa is the largest real part of a root, a maximum of functions that are smooth but
 //! where roots meet. At its minimum either several roots share the real part, or a root is double
 //! or triple, or the gradient vanishes along what is left free. With D the characteristic function,
-//! a prime for d/dλ and indices for derivatives with respect to the gain and the delay:
+//! a prime for d/dλ and indices for derivatives with respect to the two parameters of the plane:
 //!
 //! - a double pair: D(μ) = 0 where D′(μ) = 0, a complex equation
 //! - a triple real root: D(ν) = D′(ν) = 0 where D″(ν) = 0
-//! - a double real root at rest: D(μ) = 0, and D_g D′_τ − D_τ D′_g = 0, by which μ does not move
+//! - a double real root at rest: D(μ) = 0, and D_p D′_q − D_q D′_p = 0, by which μ does not move
 //!   along the curve D = D′ = 0
 //! - roots with equal real parts; where there are only two, ∇Re λ₁ × ∇Re λ₂ = 0 as well
 //! - one root at rest: ∇Re λ = 0
@@ -23,6 +23,8 @@ use crate::model::elementary::{norm, pow};
 const MOST_STEPS: u32 = 30;
 /// Roots nearer to one another than this, relative, are one and the same.
 const ONE_PLACE: f64 = 1e-8;
+/// What is nearer to a multiple root than this, relative, is part of it.
+const PART_OF_MULTIPLE: f64 = 1e-3;
 /// A pair is off the real axis by more than this, relative.
 const OFF_AXIS: f64 = 1e-9;
 
@@ -43,10 +45,10 @@ impl Followed {
     /// The roots at a place nearby; none where one is lost.
     fn moved<F: Family>(self, search: &Search<F>, place: Place) -> Option<Self> {
         let setting = search.family.setting(place)?;
-        let at = |lambda| F::derivatives(&setting, place.tau, lambda);
+        let at = |lambda| F::derivatives(&setting, search.family.delay(place), lambda);
         match self {
             Self::Root(start) => {
-                let root = polish(F::equation(&setting), place.tau, start)?;
+                let root = polish(F::equation(&setting), search.family.delay(place), start)?;
                 Some(Self::Root(root.lambda))
             }
             Self::DoublePair(start) => {
@@ -113,10 +115,14 @@ impl Condition {
 
     /// Whether what is followed lies in different places.
     fn apart(&self) -> bool {
-        let all = || self.followed.iter().map(|f| f.lambda());
-        all().enumerate().all(|(i, p)| {
-            let near = |q: Complex64| norm(p - q) <= ONE_PLACE * (1.0 + norm(p));
-            !all().skip(i + 1).any(near)
+        self.followed.iter().enumerate().all(|(i, of)| {
+            let p = of.lambda();
+            let near = |other: &Followed| {
+                let simple = of.multiplicity().max(other.multiplicity()) == 1;
+                let place = if simple { ONE_PLACE } else { PART_OF_MULTIPLE };
+                norm(p - other.lambda()) <= place * (1.0 + norm(p))
+            };
+            !self.followed[i + 1..].iter().any(near)
         })
     }
 
@@ -129,7 +135,7 @@ impl Condition {
     /// What vanishes at an optimum inside the box: two numbers.
     pub(super) fn inside<F: Family>(&self, search: &Search<F>, place: Place) -> Option<[f64; 2]> {
         let setting = search.family.setting(place)?;
-        let derivatives = |l: Complex64| F::derivatives(&setting, place.tau, l);
+        let derivatives = |l: Complex64| F::derivatives(&setting, search.family.delay(place), l);
         let gradient = |l| search.family.gradient(place, l);
         let gap = |i: usize| self.followed[i].lambda().re - self.followed[i + 1].lambda().re;
         let first = self.followed[0];
@@ -145,7 +151,7 @@ impl Condition {
             (Followed::DoubleReal(l), 1) => {
                 let value = derivatives(l.into())[0].re;
                 let by = search.family.by_parameters(place, l.into())?;
-                [value, (by.gain * by.slope_tau - by.tau * by.slope_gain).re]
+                [value, (by.p * by.slope_q - by.q * by.slope_p).re]
             }
             (Followed::DoubleReal(l), _) => [derivatives(l.into())[0].re, gap(0)],
             (Followed::Root(l), 1) => gradient(l)?,
@@ -159,19 +165,21 @@ impl Condition {
         })
     }
 
-    /// What vanishes at an optimum on an edge of the box, where only the gain (`along_gain`) or
-    /// only the delay is free.
+    /// What vanishes at an optimum on an edge of the box, where only p (`along_p`) or only q
+    /// is free.
     pub(super) fn on_edge<F: Family>(
         &self,
         search: &Search<F>,
         place: Place,
-        along_gain: bool,
+        along_p: bool,
     ) -> Option<f64> {
         let setting = search.family.setting(place)?;
         let first = self.followed[0];
         Some(match (first, self.followed.len()) {
-            (Followed::DoubleReal(l), 1) => F::derivatives(&setting, place.tau, l.into())[0].re,
-            (Followed::Root(l), 1) => search.family.gradient(place, l)?[usize::from(!along_gain)],
+            (Followed::DoubleReal(l), 1) => {
+                F::derivatives(&setting, search.family.delay(place), l.into())[0].re
+            }
+            (Followed::Root(l), 1) => search.family.gradient(place, l)?[usize::from(!along_p)],
             (Followed::Root(l), 2) => l.re - self.followed[1].lambda().re,
             _ => return None,
         })
@@ -194,8 +202,8 @@ impl Condition {
 }
 
 /// The place next to `from` where D has a double real root, as it has at `from` with the root `mu`:
-/// the gain moved by `step`.0 and the delay as it comes out, or the delay moved by `step`.1 where
-/// the gain is to come out (`step`.0 is zero). None where the curve of such places does not reach
+/// p moved by `step`.0 and q as it comes out, or q moved by `step`.1 where p is to come out
+/// (`step`.0 is zero). None where the curve of such places does not reach
 /// that far.
 pub(super) fn along_double_roots<F: Family>(
     search: &Search<F>,
@@ -203,29 +211,25 @@ pub(super) fn along_double_roots<F: Family>(
     step: (f64, f64),
 ) -> Option<Place> {
     let (mut place, mut mu) = from;
-    let by_gain = step.0 != 0.0;
+    let by_p = step.0 != 0.0;
     let slopes = |place, mu: f64| {
         let by = search.family.by_parameters(place, mu.into())?;
-        let [free, held] = [(by.tau.re, by.slope_tau.re), (by.gain.re, by.slope_gain.re)];
-        Some(if by_gain { (free, held) } else { (held, free) })
+        let [free, held] = [(by.q.re, by.slope_q.re), (by.p.re, by.slope_p.re)];
+        Some(if by_p { (free, held) } else { (held, free) })
     };
     let move_free = |place: &mut Place, by: f64| {
-        *(if by_gain {
-            &mut place.tau
-        } else {
-            &mut place.gain
-        }) += by;
+        *(if by_p { &mut place.q } else { &mut place.p }) += by;
     };
     let derivatives = |place: Place, mu: f64| {
         let setting = search.family.setting(place)?;
-        Some(F::derivatives(&setting, place.tau, mu.into()).map(|d| d.re))
+        Some(F::derivatives(&setting, search.family.delay(place), mu.into()).map(|d| d.re))
     };
     // Along the curve D and D′ keep vanishing.
     let ((free, free_slope), (held, held_slope)) = slopes(place, mu)?;
     let by = -(step.0 + step.1) * held / free;
     mu -= (held_slope * (step.0 + step.1) + free_slope * by) / derivatives(place, mu)?[2];
-    place.gain += step.0;
-    place.tau += step.1;
+    place.p += step.0;
+    place.q += step.1;
     move_free(&mut place, by);
     for _ in 0..MOST_STEPS {
         let [value, first, second, _] = derivatives(place, mu)?;
@@ -238,7 +242,7 @@ pub(super) fn along_double_roots<F: Family>(
         }
         mu -= by_mu;
         move_free(&mut place, -by);
-        let value_of_free = if by_gain { place.tau } else { place.gain };
+        let value_of_free = if by_p { place.q } else { place.p };
         if by_mu.abs() <= 1e-13 * (1.0 + mu.abs())
             && by.abs() <= 1e-13 * (1.0 + value_of_free.abs())
         {

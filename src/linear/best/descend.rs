@@ -1,6 +1,7 @@
 //! A local minimum of a function with kinks: direct search along ever new directions.
 
 use super::search::{Evaluator, Family, Place, Search};
+use crate::linear::roots::golden_section;
 use crate::model::elementary::{hypot, sincos};
 
 /// Directions tried at a time, evenly over the circle and turned by the golden angle from one try
@@ -14,31 +15,31 @@ const SHRINK: f64 = 0.55;
 /// Tries after which it ends anyhow.
 const MOST_TRIES: u32 = 600;
 
-/// The length scales around a start: a step in the gain, with the change of delay that goes along
-/// with it, and a step in the delay.
+/// The length scales around a start: a step in p, with the change of q that goes along with it, and
+/// a step in q.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
-    pub gain: f64,
+    pub p: f64,
     pub slope: f64,
-    pub tau: f64,
+    pub q: f64,
 }
 
 impl Frame {
     /// The place at `radius` from `centre`, at `angle` in the frame.
     pub(super) fn around(&self, centre: Place, radius: f64, angle: f64) -> Place {
         let (sin, cos) = sincos(angle);
-        let gain = self.gain * radius * cos;
+        let p = self.p * radius * cos;
         Place {
-            gain: centre.gain + gain,
-            tau: centre.tau + self.slope * gain + self.tau * radius * sin,
+            p: centre.p + p,
+            q: centre.q + self.slope * p + self.q * radius * sin,
         }
     }
 
     /// How far `place` is from `centre`: the radius at which [`Frame::around`] gives it.
     pub(super) fn apart(&self, centre: Place, place: Place) -> f64 {
-        let gain = place.gain - centre.gain;
-        let tau = place.tau - centre.tau - self.slope * gain;
-        hypot(gain / self.gain, tau / self.tau)
+        let p = place.p - centre.p;
+        let q = place.q - centre.q - self.slope * p;
+        hypot(p / self.p, q / self.q)
     }
 }
 
@@ -76,17 +77,17 @@ pub(super) fn descend<F>(
         }
     }
     // Steps grow too small to arrive at an edge that is approached at a slant.
-    let edge = search.nearest_edge(best.0, (frame.gain, frame.tau));
+    let edge = search.nearest_edge(best.0, (frame.p, frame.q));
     let there = of(edge, best.1);
     if there <= best.1 { (edge, there) } else { best }
 }
 
-/// Halvings, about, of the bracket in which the best delay of a gain is looked for.
-const HALVINGS: u32 = 40;
+/// Golden sections of the bracket in which the best q of a p is looked for.
+const SECTIONS: u32 = 40;
 /// Steps along a valley.
 const MOST_STEPS: u32 = 120;
 
-/// Goes along the valley floor, the best delay of each gain, from `start`: where a real root is
+/// Goes along the valley floor, the best q of each p, from `start`: where a real root is
 /// double all along it, the walls rise like a square root, the floor hardly falls, and [`descend`]
 /// gets stuck.
 pub(super) fn follow_valley(
@@ -96,56 +97,38 @@ pub(super) fn follow_valley(
     frame: &Frame,
 ) -> (Place, f64) {
     let mut best = floor(evaluator, search, start, frame);
-    let (mut step, mut slope) = (frame.gain, frame.slope);
+    let (mut step, mut slope) = (frame.p, frame.slope);
     for _ in 0..MOST_STEPS {
         let at = best.0;
-        let gain = (at.gain + step).clamp(search.gains.0, search.gains.1);
+        let p = (at.p + step).clamp(search.p.0, search.p.1);
         let ahead = Place {
-            gain,
-            tau: at.tau + slope * (gain - at.gain),
+            p,
+            q: at.q + slope * (p - at.p),
         };
         let there = floor(evaluator, search, ahead, frame);
-        if there.1 < best.1 && ahead.gain != at.gain {
-            slope = (there.0.tau - at.tau) / (ahead.gain - at.gain);
+        if there.1 < best.1 && ahead.p != at.p {
+            slope = (there.0.q - at.q) / (ahead.p - at.p);
             best = there;
             step *= GROW;
         } else {
             step *= -SHRINK;
         }
-        if step.abs() < 1e-7 * frame.gain {
+        if step.abs() < 1e-7 * frame.p {
             break;
         }
     }
     best
 }
 
-/// The best delay near that of `place` at its gain, by golden-section search.
+/// The best q near that of `place` at its p, by golden-section search.
 fn floor(
     evaluator: &mut Evaluator,
     search: &Search<impl Family>,
     place: Place,
     frame: &Frame,
 ) -> (Place, f64) {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let mut at = |tau: f64| {
-        let there = search.clamp(Place { tau, ..place });
-        (there, evaluator.abscissa(search, there))
-    };
-    let (mut low, mut high) = (place.tau - 2.0 * frame.tau, place.tau + 2.0 * frame.tau);
-    let (mut left, mut right) = (
-        at(high - golden * (high - low)),
-        at(low + golden * (high - low)),
-    );
-    for _ in 0..HALVINGS {
-        if left.1 <= right.1 {
-            high = low + golden * (high - low);
-            right = left;
-            left = at(high - golden * (high - low));
-        } else {
-            low = high - golden * (high - low);
-            left = right;
-            right = at(low + golden * (high - low));
-        }
-    }
-    if left.1 <= right.1 { left } else { right }
+    let at = |q: f64| search.clamp(Place { q, ..place });
+    let range = (place.q - 2.0 * frame.q, place.q + 2.0 * frame.q);
+    let (q, abscissa) = golden_section(range, SECTIONS, |q| evaluator.abscissa(search, at(q)));
+    (at(q), abscissa)
 }

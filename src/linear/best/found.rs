@@ -74,10 +74,10 @@ impl Kind {
 /// A setting at which the abscissa is smallest, dimensionless.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimum {
-    /// The searched gain.
-    pub gain: f64,
-    /// The delay.
-    pub tau: f64,
+    /// p, such as a gain.
+    pub p: f64,
+    /// q, such as the delay.
+    pub q: f64,
     /// The spectral abscissa max Re λ; negative where sliding is stable.
     pub abscissa: f64,
     /// |Im λ| of the roots that share this real part, rising; 0 for a real one. A double root
@@ -117,50 +117,49 @@ impl Optimum {
 /// A stable region of the box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// The smallest and the largest gain at which it was sampled, or its best setting is.
-    pub gains: (f64, f64),
-    /// The shortest and the longest stable delay at these gains.
-    pub delays: (f64, f64),
+    /// The smallest and the largest p at which it was sampled, or its best setting is.
+    pub p: (f64, f64),
+    /// The smallest and the largest stable q at these p.
+    pub q: (f64, f64),
     /// The setting of fastest decay in it.
     pub best: Optimum,
-    /// Its stable delays at the gains sampled.
+    /// Its stable q at the p sampled.
     pub(super) stretches: Stretches,
 }
 
 impl Region {
-    /// A region of which the stable delays are not kept.
-    pub(super) fn without_stretches(gains: (f64, f64), delays: (f64, f64), best: Optimum) -> Self {
+    /// A region of which the stable q are not kept.
+    pub(super) fn without_stretches(p: (f64, f64), q: (f64, f64), best: Optimum) -> Self {
         Self {
-            gains,
-            delays,
+            p,
+            q,
             best,
             stretches: Stretches::new(),
         }
     }
 
-    /// Whether a place is in the region, as the sampled gain next to it has it.
+    /// Whether a place is in the region, as the sampled p next to it has it.
     pub(super) fn holds(&self, place: &Optimum) -> bool {
-        let apart = |s: &&Stretch| (s.gain - place.gain).abs();
+        let apart = |s: &&Stretch| (s.p - place.p).abs();
         let nearest = self.stretches.iter();
         let nearest = nearest.min_by(|p, q| apart(p).total_cmp(&apart(q)));
         let ends = [self.stretches.first(), self.stretches.last()];
         let ([Some(first), Some(last)], Some(nearest)) = (ends, nearest) else {
             return false;
         };
-        let there =
-            |s: &Stretch| s.gain == nearest.gain && s.from <= place.tau && place.tau <= s.to;
-        (first.gain..=last.gain).contains(&place.gain) && self.stretches.iter().any(there)
+        let there = |s: &Stretch| s.p == nearest.p && s.from <= place.q && place.q <= s.to;
+        (first.p..=last.p).contains(&place.p) && self.stretches.iter().any(there)
     }
 
     /// Both regions as one.
     pub(super) fn joined(mut self, other: Self) -> Self {
         let hull = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-        self.gains = hull(self.gains, other.gains);
-        self.delays = hull(self.delays, other.delays);
+        self.p = hull(self.p, other.p);
+        self.q = hull(self.q, other.q);
         self.stretches.extend(other.stretches);
         self.stretches.sort_by(|p, q| {
-            let by_gain = p.gain.total_cmp(&q.gain);
-            by_gain.then(p.from.total_cmp(&q.from))
+            let by_p = p.p.total_cmp(&q.p);
+            by_p.then(p.from.total_cmp(&q.from))
         });
         if other.best.abscissa < self.best.abscissa {
             self.best = other.best;
@@ -168,8 +167,8 @@ impl Region {
         self
     }
 
-    /// The shortest stable delay that was seen.
-    pub(super) fn shortest(&self) -> f64 {
+    /// The smallest stable q that was seen.
+    pub(super) fn smallest(&self) -> f64 {
         let all = self.stretches.iter().map(|s| s.from);
         all.fold(f64::INFINITY, f64::min)
     }
@@ -180,7 +179,7 @@ impl Region {
 pub struct Best {
     /// The setting of fastest decay in the box; where nothing is stable, of slowest growth.
     pub overall: Optimum,
-    /// Every stable region with its own best setting, by their shortest delays. Stable is where
+    /// Every stable region with its own best setting, by their smallest q. Stable is where
     /// roots decay by more than rounding can do to the abscissa; regions with the same best setting
     /// are one.
     pub regions: Vec<Region>,

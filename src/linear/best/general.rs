@@ -1,4 +1,5 @@
-//! Any system with one delay over a plane of one of its parameters and the delay.
+//! Any system with one delay over a plane of one of its parameters and the delay, or of two of its
+//! parameters.
 
 use num_complex::Complex64;
 
@@ -20,35 +21,57 @@ const DIFFERENCE: f64 = 1e-3;
 const LEAST_SCALE: f64 = 1e-2;
 /// Steps of counts at one place: where they take more, nothing is known of it.
 pub(super) const MOST_STEPS: u64 = 1 << 17;
-/// Delays at which a line without a closed form is counted, and halvings of its ends.
+/// Places at which a line without a closed form is counted, and halvings of its ends.
 const SAMPLES: u32 = 256;
 const MOST_HALVINGS: u32 = 60;
 
-/// A system at every gain and delay.
+/// A system at every place of a plane.
 #[derive(Clone, Copy)]
 pub struct General<'a> {
-    /// The system at a gain and a delay; none where it has none.
+    /// The system at p and q; none where it has none.
     pub system_at: &'a dyn Fn(f64, f64) -> Option<System>,
-    /// P and Q do not depend on the delay: the stable delays of a gain are known in closed form.
-    pub lines: bool,
-    /// The width of the gains that are searched.
+    /// What q is.
+    pub across: Across,
+    /// The width of the p that are searched.
     pub width: f64,
 }
 
+/// What the second parameter of a plane is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Across {
+    /// The delay.
+    Delay {
+        /// P and Q do not depend on it: the stable delays of a p are known in closed form.
+        lines: bool,
+    },
+    /// Another parameter.
+    Parameter {
+        /// The delay of all places, dimensionless.
+        tau: f64,
+        /// The width of the q that are searched.
+        width: f64,
+    },
+}
+
 impl General<'_> {
-    /// The line of delays of a gain; none where it has none.
-    fn line(&self, gain: f64) -> Option<DelayLine> {
-        let system = (self.system_at)(gain, 0.0)?;
+    /// Whether each p is a line of delays with a closed form.
+    fn has_lines(&self) -> bool {
+        self.across == Across::Delay { lines: true }
+    }
+
+    /// The line of delays of a p; none where it has none.
+    fn line(&self, p: f64) -> Option<DelayLine> {
+        let system = (self.system_at)(p, 0.0)?;
         Some(DelayLine::of(&system))
     }
 
     /// How many frequencies there are at which pairs cross.
-    fn crossings(&self, gain: f64) -> Option<usize> {
-        let line = self.line(gain)?;
+    fn crossings(&self, p: f64) -> Option<usize> {
+        let line = self.line(p)?;
         Some(crossings(&line).count())
     }
 
-    /// Where the number of crossings changes between two gains; at the first one it is `before`.
+    /// Where the number of crossings changes between two p; at the first one it is `before`.
     fn breakpoint(&self, (mut from, mut to): (f64, f64), before: Option<usize>) -> f64 {
         for _ in 0..MOST_HALVINGS {
             let middle = 0.5 * (from + to);
@@ -62,19 +85,20 @@ impl General<'_> {
     }
 
     /// Whether no root is right of the axis.
-    fn stable(&self, gain: f64, tau: f64) -> bool {
-        let counter = self.setting(Place { gain, tau });
+    fn stable(&self, place: Place) -> bool {
+        let counter = self.setting(place);
+        let tau = self.delay(place);
         counter.is_some_and(|counter| counter.right_of(tau, 0.0) == RightOf::Roots(0))
     }
 
-    /// The stable delays of a gain by counts at single delays: what lies between two of them is
-    /// missed.
-    fn sampled(&self, gain: f64, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
-        let delay = |i: u32| from + (to - from) * (f64::from(i) / f64::from(SAMPLES));
+    /// The stable q of a p by counts at single places: what lies between two of them is missed.
+    fn sampled(&self, p: f64, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
+        let stable_at = |q: f64| self.stable(Place { p, q });
+        let value = |i: u32| from + (to - from) * (f64::from(i) / f64::from(SAMPLES));
         let end = |mut stable: f64, mut other: f64| {
             for _ in 0..MOST_HALVINGS {
                 let middle = 0.5 * (stable + other);
-                if self.stable(gain, middle) {
+                if stable_at(middle) {
                     stable = middle;
                 } else {
                     other = middle;
@@ -85,17 +109,17 @@ impl General<'_> {
         let mut found: Vec<(f64, f64)> = Vec::new();
         let (mut before, mut begun) = (from, None);
         for i in 0..=SAMPLES {
-            let tau = delay(i);
-            match (self.stable(gain, tau), begun) {
-                (true, None) if i == 0 => begun = Some(tau),
-                (true, None) => begun = Some(end(tau, before)),
+            let q = value(i);
+            match (stable_at(q), begun) {
+                (true, None) if i == 0 => begun = Some(q),
+                (true, None) => begun = Some(end(q, before)),
                 (false, Some(start)) => {
-                    found.push((start, end(before, tau)));
+                    found.push((start, end(before, q)));
                     begun = None;
                 }
                 _ => {}
             }
-            before = tau;
+            before = q;
         }
         found.extend(begun.map(|start| (start, to)));
         found
@@ -103,7 +127,7 @@ impl General<'_> {
 
     /// D and D′ at a place.
     fn slopes(&self, place: Place, lambda: Complex64) -> Option<[Complex64; 2]> {
-        let jet = (self.system_at)(place.gain, place.tau)?.jet(place.tau, lambda);
+        let jet = (self.system_at)(place.p, place.q)?.jet(self.delay(place), lambda);
         Some([jet.value, jet.first])
     }
 
@@ -120,27 +144,43 @@ impl General<'_> {
         Some([0, 1].map(|i| (8.0 * (near.0[i] - near.1[i]) - (far.0[i] - far.1[i])) / (12.0 * h)))
     }
 
-    /// ∂D/∂τ and ∂D′/∂τ.
-    fn by_delay(&self, place: Place, lambda: Complex64) -> Option<[Complex64; 2]> {
-        let Place { gain, tau } = place;
-        if self.lines {
+    /// ∂D/∂p and ∂D′/∂p.
+    fn by_p(&self, place: Place, lambda: Complex64) -> Option<[Complex64; 2]> {
+        let shifted = |by| Place {
+            p: place.p + by,
+            ..place
+        };
+        self.quotient(shifted, difference(place.p, self.width), lambda)
+    }
+
+    /// ∂D/∂q and ∂D′/∂q.
+    fn by_q(&self, place: Place, lambda: Complex64) -> Option<[Complex64; 2]> {
+        let tau = self.delay(place);
+        if self.has_lines() {
             // D depends on τ by E = e^(−λτ) alone: −λ Q E, and what d/dλ makes of it.
-            let system = (self.system_at)(gain, tau)?;
+            let system = (self.system_at)(place.p, tau)?;
             let [_, _, q, q_slope] = system.pair(lambda);
             let delayed = system.jet(tau, lambda).delayed;
             let slope = q + lambda * (q_slope - tau * q);
             return Some([-lambda * q * delayed, -slope * delayed]);
         }
-        let h = DIFFERENCE * tau.min(1.0 / norm(lambda));
-        self.quotient(
-            |by| Place {
-                gain,
-                tau: tau + by,
-            },
-            h,
-            lambda,
-        )
+        let h = match self.across {
+            Across::Delay { .. } => DIFFERENCE * tau.min(1.0 / norm(lambda)),
+            Across::Parameter { width, .. } => difference(place.q, width),
+        };
+        let shifted = |by| Place {
+            q: place.q + by,
+            ..place
+        };
+        self.quotient(shifted, h, lambda)
     }
+}
+
+/// The step of difference quotients along a parameter with this value, of which a range of this
+/// width is searched.
+fn difference(value: f64, width: f64) -> f64 {
+    let scale = value.abs().max(LEAST_SCALE * width);
+    DIFFERENCE * if scale > 0.0 { scale } else { 1.0 }
 }
 
 /// The spectral abscissa of the system of `counter` at the delay `tau`, or its supremum where roots
@@ -182,7 +222,7 @@ fn crossings(line: &DelayLine) -> impl Iterator<Item = &crate::linear::Crossing>
 /// Whether rounding leaves open what holds in the middle of a stretch: there roots may cross at
 /// frequencies that are not told apart.
 fn in_doubt(line: &DelayLine, stretch: &Stretch) -> bool {
-    let middle = stretch.at(0.5).tau;
+    let middle = stretch.at(0.5).q;
     line.count(middle, MarginalTolerance::default()).marginal
 }
 
@@ -199,9 +239,16 @@ impl Family for General<'_> {
     type Setting = RootCounter;
 
     fn setting(&self, place: Place) -> Option<RootCounter> {
-        let system = (self.system_at)(place.gain, place.tau)?;
+        let system = (self.system_at)(place.p, place.q)?;
         let known = !matches!(system.class(), Class::DegreeUnknown | Class::Refused);
         known.then(|| RootCounter::new(&system).allowing(MOST_STEPS))
+    }
+
+    fn delay(&self, place: Place) -> f64 {
+        match self.across {
+            Across::Delay { .. } => place.q,
+            Across::Parameter { tau, .. } => tau,
+        }
     }
 
     fn equation(setting: &RootCounter) -> impl Equation {
@@ -218,45 +265,38 @@ impl Family for General<'_> {
     }
 
     fn by_parameters(&self, place: Place, lambda: Complex64) -> Option<ByParameters> {
-        let Place { gain, tau } = place;
-        let scale = gain.abs().max(LEAST_SCALE * self.width);
-        let scale = if scale > 0.0 { scale } else { 1.0 };
-        let along_gain = |by| Place {
-            gain: gain + by,
-            tau,
-        };
-        let [by_gain, slope_gain] = self.quotient(along_gain, DIFFERENCE * scale, lambda)?;
-        let [by_tau, slope_tau] = self.by_delay(place, lambda)?;
+        let [p, slope_p] = self.by_p(place, lambda)?;
+        let [q, slope_q] = self.by_q(place, lambda)?;
         Some(ByParameters {
-            gain: by_gain,
-            tau: by_tau,
-            slope_gain,
-            slope_tau,
+            p,
+            q,
+            slope_p,
+            slope_q,
         })
     }
 
     fn gradient(&self, place: Place, lambda: Complex64) -> Option<[f64; 2]> {
         let by = self.by_parameters(place, lambda)?;
         let [_, slope] = self.slopes(place, lambda)?;
-        Some([(-by.gain / slope).re, (-by.tau / slope).re])
+        Some([(-by.p / slope).re, (-by.q / slope).re])
     }
 
     fn abscissa(&self, finder: &mut RootFinder, place: Place) -> f64 {
         let Some(counter) = self.setting(place) else {
             return f64::INFINITY;
         };
-        abscissa_of(&counter, finder, place.tau, f64::INFINITY)
+        abscissa_of(&counter, finder, self.delay(place), f64::INFINITY)
     }
 
-    /// The gains between which the number of crossings changes, halved until they are one, and 0,
-    /// where control may vanish.
-    fn breakpoints(&self, gains: &[f64], stop: &Stop) -> Vec<f64> {
+    /// The p between which the number of crossings changes, halved until they are one, and 0, where
+    /// control may vanish.
+    fn breakpoints(&self, values: &[f64], stop: &Stop) -> Vec<f64> {
         let mut points = vec![0.0];
-        if self.lines {
-            let counted: Vec<_> = gains
+        if self.has_lines() {
+            let counted: Vec<_> = values
                 .iter()
                 .take_while(|_| !stop.is_set())
-                .map(|&gain| (gain, self.crossings(gain)))
+                .map(|&p| (p, self.crossings(p)))
                 .collect();
             for pair in counted.windows(2).take_while(|_| !stop.is_set()) {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
@@ -268,21 +308,21 @@ impl Family for General<'_> {
         points
     }
 
-    fn stretches(&self, gain: f64, delays: (f64, f64)) -> Vec<Stretch> {
-        if !self.lines {
-            let found = self.sampled(gain, delays).into_iter();
-            let cut = |interval| Stretch::cut(gain, interval, delays, (None, None));
+    fn stretches(&self, p: f64, range: (f64, f64)) -> Vec<Stretch> {
+        if !self.has_lines() {
+            let found = self.sampled(p, range).into_iter();
+            let cut = |interval| Stretch::cut(p, interval, range, (None, None));
             return found.filter_map(cut).collect();
         }
-        let Some(line) = self.line(gain) else {
+        let Some(line) = self.line(p) else {
             return Vec::new();
         };
-        line.stable_intervals_until(delays.1)
-            .filter(|interval| interval.to >= delays.0)
+        line.stable_intervals_until(range.1)
+            .filter(|interval| interval.to >= range.0)
             .take(MOST_STRETCHES)
             .filter_map(|interval| {
                 let bounds = (bound(&line, interval.from), bound(&line, interval.to));
-                Stretch::cut(gain, (interval.from, interval.to), delays, bounds)
+                Stretch::cut(p, (interval.from, interval.to), range, bounds)
             })
             .filter(|stretch| !in_doubt(&line, stretch))
             .collect()

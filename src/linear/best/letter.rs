@@ -90,7 +90,11 @@ impl Family for Letter {
     type Setting = Groups;
 
     fn setting(&self, place: Place) -> Option<Groups> {
-        Some(self.groups(place.gain))
+        Some(self.groups(place.p))
+    }
+
+    fn delay(&self, place: Place) -> f64 {
+        place.q
     }
 
     fn equation(setting: &Groups) -> impl Equation {
@@ -105,14 +109,14 @@ impl Family for Letter {
     }
 
     fn by_parameters(&self, place: Place, lambda: Complex64) -> Option<ByParameters> {
-        let Place { gain, tau } = place;
+        let Place { p: gain, q: tau } = place;
         let groups = self.groups(gain);
         let jet = Jet::at(groups, tau, lambda);
         let memory = tau * jet.delayed;
         let tau_derivative = -jet.feedback * lambda * jet.delayed;
-        let slope_tau =
+        let slope_q =
             -jet.delayed * (groups.a_v * lambda + jet.feedback - jet.feedback * lambda * tau);
-        let (gain, slope_gain) = match self.gain {
+        let (p, slope_p) = match self.gain {
             SearchedGain::Velocity => {
                 let size = groups.b - self.dashpots.damping + lambda;
                 (-size * jet.difference, -jet.difference - size * memory)
@@ -120,15 +124,15 @@ impl Family for Letter {
             SearchedGain::Load => (-jet.difference, -memory),
         };
         Some(ByParameters {
-            gain,
-            tau: tau_derivative,
-            slope_gain,
-            slope_tau,
+            p,
+            q: tau_derivative,
+            slope_p,
+            slope_q,
         })
     }
 
     fn gradient(&self, place: Place, lambda: Complex64) -> Option<[f64; 2]> {
-        let by = Sensitivity::of(self.groups(place.gain), place.tau, lambda);
+        let by = Sensitivity::of(self.groups(place.p), place.q, lambda);
         let by = by.coupled(self.dashpots.damping);
         let by_gain = match self.gain {
             SearchedGain::Velocity => by.a_v,
@@ -179,20 +183,14 @@ mod tests {
                 },
                 gain,
             };
-            let (place, lambda) = (
-                Place {
-                    gain: -0.7,
-                    tau: 2.3,
-                },
-                Complex64::new(-0.2, 0.8),
-            );
+            let (place, lambda) = (Place { p: -0.7, q: 2.3 }, Complex64::new(-0.2, 0.8));
             let h = 1e-5;
             let d = |gain: f64, tau: f64, shift: f64| {
                 let place = Place {
-                    gain: place.gain + gain,
-                    tau: place.tau + tau,
+                    p: place.p + gain,
+                    q: place.q + tau,
                 };
-                Letter::derivatives(&family.groups(place.gain), place.tau, lambda + shift)
+                Letter::derivatives(&family.groups(place.p), place.q, lambda + shift)
             };
             let quotient =
                 |p: [Complex64; 4], q: [Complex64; 4]| [0, 1, 2].map(|i| (p[i] - q[i]) / (2.0 * h));
@@ -205,10 +203,10 @@ mod tests {
                 (here[1], by_lambda[0]),
                 (here[2], by_lambda[1]),
                 (here[3], by_lambda[2]),
-                (by.gain, by_gain[0]),
-                (by.slope_gain, by_gain[1]),
-                (by.tau, by_tau[0]),
-                (by.slope_tau, by_tau[1]),
+                (by.p, by_gain[0]),
+                (by.slope_p, by_gain[1]),
+                (by.q, by_tau[0]),
+                (by.slope_q, by_tau[1]),
             ] {
                 assert!((found - expected).norm() < 1e-8, "{found} {expected}");
             }

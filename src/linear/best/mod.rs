@@ -1,23 +1,24 @@
-//! Settings of fastest decay: the gain and the delay with the smallest spectral abscissa, for every
-//! stable region.
+//! Settings of fastest decay: the two parameters p and q, such as a gain and the delay, with the
+//! smallest spectral abscissa, for every stable region.
 //!
 //! Three stages. **Regions**: the stable regions of a box are found from the closed form of the
-//! stable delays; only the gain is sampled. **Descent**: from the best places of a lattice in each
+//! stable delays; only p is sampled. **Descent**: from the best places of a lattice in each
 //! region a direct search goes down; the abscissa has kinks where roots trade places and cusps
 //! where they meet, so no gradient is used. **Polish**: near an optimum, what makes it one is a
 //! pair of smooth equations ([`Kind`]), solved by Newton's method; the result is accepted where the
 //! argument principle confirms that no root lies farther right, and where no place around it is
 //! better.
 //!
-//! A region is a connected set of stable settings *inside the box*, at the resolution of the gains
-//! sampled: 193 evenly over the box, and ever more densely towards gains at which the crossings
+//! A region is a connected set of stable settings *inside the box*, at the resolution of the p sampled:
+//! 193 evenly over the box, and ever more densely towards those at which the crossings
 //! change their number. A lobe between two neighbouring samples is missed; lobes that end in a
 //! point at such a gain are not, however small, down to 1e-16 of the box.
 //!
 //! - `condition`: what holds at an optimum: multiple roots, ties, vanishing gradients
 //! - `descend`: direct search on a function with kinks and cusps
 //! - `found`: what the search finds: optima, regions
-//! - `general`: any system with one delay over a plane of one of its parameters and the delay
+//! - `general`: any system with one delay over a plane of one of its parameters and the delay, or of
+//!   two of its parameters
 //! - `letter`: the controlled oscillator over a plane of one of its gains and the delay
 //! - `polish`: Newton's method on those conditions, and the certificate
 //! - `regions`: the stable regions of a box: lobes
@@ -39,7 +40,7 @@ mod sampled;
 mod search;
 
 pub use found::{Best, Kind, MOST_REGIONS, Optimum, Region};
-pub use general::General;
+pub use general::{Across, General};
 pub use letter::{Letter, SearchedGain};
 pub use regions::{Bound, Stretch};
 pub use rig::Rig;
@@ -107,7 +108,7 @@ pub fn best(search: &Search<impl Family>, stop: &Stop) -> Best {
     }
     let told = |of: &Region| regions.iter().any(|known| known.holds(&of.best));
     regions_left_out += within_rounding.iter().filter(|of| !told(of)).count();
-    regions.sort_by(|p: &Region, q: &Region| p.shortest().total_cmp(&q.shortest()));
+    regions.sort_by(|p: &Region, q: &Region| p.smallest().total_cmp(&q.smallest()));
     let overall = regions
         .iter()
         .map(|region| &region.best)
@@ -145,14 +146,14 @@ fn region(evaluator: &mut Evaluator, search: &Search<impl Family>, stretches: St
             |(low, high), (from, to)| (low.min(from), high.max(to)),
         )
     };
-    let gains = hull(&|i| (stretches[i].gain, stretches[i].gain));
-    let delays = hull(&|i| (stretches[i].from, stretches[i].to));
-    let starts = lattice(&stretches, gains, |place| evaluator.abscissa(search, place));
+    let p = hull(&|i| (stretches[i].p, stretches[i].p));
+    let q = hull(&|i| (stretches[i].from, stretches[i].to));
+    let starts = lattice(&stretches, p, |place| evaluator.abscissa(search, place));
     let best = lowest(evaluator, search, starts);
     let with = |(from, to): (f64, f64), place: f64| (from.min(place), to.max(place));
     Region {
-        gains: with(gains, best.gain),
-        delays: with(delays, best.tau),
+        p: with(p, best.p),
+        q: with(q, best.q),
         best,
         stretches,
     }
@@ -169,32 +170,28 @@ fn add(regions: &mut Vec<Region>, mut region: Region) {
     regions.push(region);
 }
 
-/// A value on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly over the
-/// stable delays of each.
-fn lattice(
-    stretches: &Stretches,
-    gains: (f64, f64),
-    mut of: impl FnMut(Place) -> f64,
-) -> Vec<Start> {
-    let chosen = chosen_gains(stretches, gains);
-    let middle = |gain: f64| {
-        let there = stretches.iter().find(|s| s.gain == gain);
-        there.map_or(f64::NAN, |s| s.at(0.5).tau)
+/// A value on a lattice of the region: over its p as [`chosen_lines`] has them, evenly over the
+/// stable q of each.
+fn lattice(stretches: &Stretches, p: (f64, f64), mut of: impl FnMut(Place) -> f64) -> Vec<Start> {
+    let chosen = chosen_lines(stretches, p);
+    let middle = |p: f64| {
+        let there = stretches.iter().find(|s| s.p == p);
+        there.map_or(f64::NAN, |s| s.at(0.5).q)
     };
     let mut starts = Vec::new();
-    for (i, &(gain, _)) in chosen.iter().enumerate() {
+    for (i, &(p, _)) in chosen.iter().enumerate() {
         let (before, after) = (
             chosen[i.saturating_sub(1)].0,
             chosen[(i + 1).min(chosen.len() - 1)].0,
         );
-        let step = (gain - before).max(after - gain);
+        let step = (p - before).max(after - p);
         let slope = (middle(after) - middle(before)) / (after - before);
-        for stretch in stretches.iter().filter(|s| s.gain == gain) {
+        for stretch in stretches.iter().filter(|s| s.p == p) {
             for (part, apart) in parts(stretch) {
                 let frame = Frame {
-                    gain: positive(step, gain),
+                    p: positive(step, p),
                     slope: if slope.is_finite() { slope } else { 0.0 },
-                    tau: positive(apart * (stretch.to - stretch.from), stretch.to),
+                    q: positive(apart * (stretch.to - stretch.from), stretch.to),
                 };
                 let place = stretch.at(part);
                 starts.push(Start {
@@ -220,20 +217,20 @@ fn parts(stretch: &Stretch) -> impl Iterator<Item = (f64, f64)> {
     evenly.chain(short)
 }
 
-/// Gains of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among
+/// The p of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among
 /// those that were sampled, which are denser towards its ends. With the number of each among the
 /// sampled ones.
-fn chosen_gains(stretches: &Stretches, (low, high): (f64, f64)) -> Vec<(f64, usize)> {
-    let mut sampled: Vec<f64> = stretches.iter().map(|s| s.gain).collect();
+fn chosen_lines(stretches: &Stretches, (low, high): (f64, f64)) -> Vec<(f64, usize)> {
+    let mut sampled: Vec<f64> = stretches.iter().map(|s| s.p).collect();
     sampled.dedup();
     let spacing = (high - low) / LATTICE_LINES as f64;
     let stride = sampled.len().div_ceil(LATTICE_LINES);
     let mut chosen: Vec<(f64, usize)> = Vec::new();
-    for (number, gain) in sampled.into_iter().enumerate() {
+    for (number, p) in sampled.into_iter().enumerate() {
         let wanted =
-            |&(last, at): &(f64, usize)| gain - last >= 0.7 * spacing || number - at >= stride;
+            |&(last, at): &(f64, usize)| p - last >= 0.7 * spacing || number - at >= stride;
         if chosen.last().is_none_or(wanted) {
-            chosen.push((gain, number));
+            chosen.push((p, number));
         }
     }
     chosen
@@ -254,8 +251,8 @@ fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
     let mut chosen: Vec<Start> = Vec::new();
     for start in starts {
         let near = |Start { place, frame, .. }: &Start| {
-            (place.gain - start.place.gain).abs() < 2.5 * frame.gain
-                && (place.tau - start.place.tau).abs() < 2.5 * frame.tau
+            (place.p - start.place.p).abs() < 2.5 * frame.p
+                && (place.q - start.place.q).abs() < 2.5 * frame.q
         };
         if !chosen.iter().any(near) {
             chosen.push(start);
@@ -283,6 +280,23 @@ fn lowest(evaluator: &mut Evaluator, search: &Search<impl Family>, starts: Vec<S
     best.expect("a region or a grid has at least one place")
 }
 
+/// Steps of a descent from a place near an optimum, over the width of the box.
+const NEARBY: f64 = 0.02;
+
+/// The optimum to which a descent from `start` leads, a place near it. Once `stop` is set, it comes
+/// soon but is meaningless.
+#[must_use]
+pub fn near(search: &Search<impl Family>, start: Place, stop: &Stop) -> Optimum {
+    let mut evaluator = Evaluator::heeding(stop);
+    let length = |(from, to): (f64, f64), value: f64| positive(NEARBY * (to - from), value);
+    let frame = Frame {
+        p: length(search.p, start.p),
+        slope: 0.0,
+        q: length(search.q, start.q),
+    };
+    optimum_near(&mut evaluator, search, search.clamp(start), &frame)
+}
+
 /// The optimum to which the descent from `start` leads: polished, and with nothing better around
 /// it.
 fn optimum_near(
@@ -304,7 +318,7 @@ fn optimum_near(
             };
             let of = |place, _| evaluator.abscissa(search, place);
             let fine = descend(of, search, near, frame, (10.0 * COARSE, FINE));
-            let edge = search.nearest_edge(fine.0, (frame.gain, frame.tau));
+            let edge = search.nearest_edge(fine.0, (frame.p, frame.q));
             polished(evaluator, search, fine, frame)
                 .or_else(|| polished(evaluator, search, (edge, fine.1), frame))
                 .unwrap_or_else(|| unpolished(evaluator, search, fine))
@@ -326,8 +340,8 @@ fn better_nearby(
     frame: &Frame,
 ) -> Option<Place> {
     let centre = Place {
-        gain: found.gain,
-        tau: found.tau,
+        p: found.p,
+        q: found.q,
     };
     let better = found.abscissa - found.margin - 1e-9 * (1.0 + found.abscissa.abs());
     let around = |radius: f64| {
@@ -338,8 +352,8 @@ fn better_nearby(
     // A valley of double real roots has walls that rise like a square root; no direction but its
     // own is a way down.
     let valley = |radius: f64| {
-        let (gain, tau) = (radius * frame.gain, radius * frame.tau);
-        [(gain, 0.0), (-gain, 0.0), (0.0, tau), (0.0, -tau)]
+        let (p, q) = (radius * frame.p, radius * frame.q);
+        [(p, 0.0), (-p, 0.0), (0.0, q), (0.0, -q)]
             .into_iter()
             .filter(|_| found.frequencies.contains(&0.0))
             .filter_map(|step| along_double_roots(search, (centre, found.abscissa), step))
@@ -360,22 +374,16 @@ fn better_nearby(
 fn least_unstable(evaluator: &mut Evaluator, search: &Search<impl Family>) -> Optimum {
     let spread = |(from, to): (f64, f64), i: usize| from + (to - from) * (i as f64 / GRID as f64);
     let frame = Frame {
-        gain: positive(
-            (search.gains.1 - search.gains.0) / GRID as f64,
-            search.gains.0,
-        ),
+        p: positive((search.p.1 - search.p.0) / GRID as f64, search.p.0),
         slope: 0.0,
-        tau: positive(
-            (search.delays.1 - search.delays.0) / GRID as f64,
-            search.delays.0,
-        ),
+        q: positive((search.q.1 - search.q.0) / GRID as f64, search.q.0),
     };
     let mut starts = Vec::new();
     for i in 0..=GRID {
         for j in 0..=GRID {
             let place = Place {
-                gain: spread(search.gains, i),
-                tau: spread(search.delays, j),
+                p: spread(search.p, i),
+                q: spread(search.q, j),
             };
             starts.push(Start {
                 value: evaluator.abscissa(search, place),

@@ -22,6 +22,8 @@ const CANDIDATES: u64 = 12;
 /// the one before, from four times what rounding can do to the abscissa. Near a multiple root the
 /// argument principle needs a line farther away than the root is blurred.
 const DISTANCES: i32 = 9;
+/// A line farther away than this, relative, says nothing of the abscissa.
+const FARTHEST_LINE: f64 = 0.02;
 /// What is left undecided of an abscissa that the descent alone has found.
 const DESCENT_ERROR: f64 = 1e-8;
 
@@ -55,12 +57,12 @@ pub(super) fn unpolished<F: Family>(
         false => decided(search, place, abscissa, DESCENT_ERROR, 1.0, 0),
     };
     let accumulating = search.family.setting(place).is_some_and(|setting| {
-        let essential = F::equation(&setting).essential_abscissa(place.tau);
+        let essential = F::equation(&setting).essential_abscissa(search.family.delay(place));
         beside_essential(abscissa, essential)
     });
     Optimum {
-        gain: place.gain,
-        tau: place.tau,
+        p: place.p,
+        q: place.q,
         abscissa,
         frequencies: frequency.into_iter().collect(),
         kind: match search.on_edge(place) {
@@ -84,10 +86,12 @@ fn decided<F: Family>(
     expected: u64,
 ) -> Option<f64> {
     let setting = search.family.setting(place)?;
-    let right_of = |line| F::equation(&setting).right_of(place.tau, line);
+    let right_of = |line| F::equation(&setting).right_of(search.family.delay(place), line);
     let least = blur + 1e-13 * (1.0 + abscissa.abs());
+    let most = FARTHEST_LINE * (1.0 + abscissa.abs());
     (1..=DISTANCES)
         .map(|i| least * power(4.0, i))
+        .take_while(|&d| d <= most.max(4.0 * least))
         .find(|d| right_of(abscissa + side * d) == Some(expected))
 }
 
@@ -104,11 +108,13 @@ fn optimum<F: Family>(
     // All roots right of a line to the left are those that are followed, and right of a line to the
     // right there is none.
     let setting = search.family.setting(place);
-    let blur = setting.map_or(f64::NAN, |setting| condition.blur::<F>(&setting, place.tau));
+    let blur = setting.map_or(f64::NAN, |setting| {
+        condition.blur::<F>(&setting, search.family.delay(place))
+    });
     let count = |side, expected| decided(search, place, abscissa, blur, side, expected).is_some();
     Optimum {
-        gain: place.gain,
-        tau: place.tau,
+        p: place.p,
+        q: place.q,
         abscissa,
         frequencies,
         kind: match edge {
@@ -186,25 +192,22 @@ fn solve(
     for _ in 0..MOST_STEPS {
         let step = newton_step(&state, search, place, frame, edge)?;
         // In units of the frame.
-        let size = hypot(step[0] / frame.gain, step[1] / frame.tau);
+        let size = hypot(step[0] / frame.p, step[1] / frame.q);
         let shortened = (0.5 / size).min(1.0);
         let next = Place {
-            gain: place.gain - shortened * step[0],
-            tau: place.tau - shortened * step[1],
+            p: place.p - shortened * step[0],
+            q: place.q - shortened * step[1],
         };
         if !size.is_finite() || search.clamp(next) != next {
             return None;
         }
-        let away = hypot(
-            (next.gain - start.gain) / frame.gain,
-            (next.tau - start.tau) / frame.tau,
-        );
+        let away = hypot((next.p - start.p) / frame.p, (next.q - start.q) / frame.q);
         if away > FARTHEST {
             return None;
         }
         place = next;
         state = state.moved(search, place)?;
-        let rounding = 1e-13 * (place.gain.abs() / frame.gain + place.tau / frame.tau);
+        let rounding = 1e-13 * (place.p.abs() / frame.p + place.q.abs() / frame.q);
         if size <= rounding || (size < 1e-7 && size >= 0.5 * last_size) {
             return Some((place, state));
         }
@@ -222,38 +225,36 @@ fn newton_step(
     frame: &Frame,
     edge: (bool, bool),
 ) -> Option<[f64; 2]> {
-    let moved = |gain: f64, tau: f64| Place {
-        gain: place.gain + gain,
-        tau: place.tau + tau,
+    let moved = |p: f64, q: f64| Place {
+        p: place.p + p,
+        q: place.q + q,
     };
-    let (h_gain, h_tau) = (DIFFERENCE * frame.gain, DIFFERENCE * frame.tau);
+    let (h_p, h_q) = (DIFFERENCE * frame.p, DIFFERENCE * frame.q);
     if edge.0 || edge.1 {
-        let along_gain = edge.1;
+        let along_p = edge.1;
         let at = |by: f64| {
-            let place = if along_gain {
+            let place = if along_p {
                 moved(by, 0.0)
             } else {
                 moved(0.0, by)
             };
-            state
-                .moved(search, place)?
-                .on_edge(search, place, along_gain)
+            state.moved(search, place)?.on_edge(search, place, along_p)
         };
-        let h = if along_gain { h_gain } else { h_tau };
+        let h = if along_p { h_p } else { h_q };
         let slope = (at(h)? - at(-h)?) / (2.0 * h);
         let step = at(0.0)? / slope;
-        return Some(if along_gain { [step, 0.0] } else { [0.0, step] });
+        return Some(if along_p { [step, 0.0] } else { [0.0, step] });
     }
     let at = |place: Place| state.moved(search, place)?.inside(search, place);
     let quotient = |ahead: [f64; 2], behind: [f64; 2], h: f64| {
         [0, 1].map(|i| (ahead[i] - behind[i]) / (2.0 * h))
     };
     let here = at(place)?;
-    let by_gain = quotient(at(moved(h_gain, 0.0))?, at(moved(-h_gain, 0.0))?, h_gain);
-    let by_tau = quotient(at(moved(0.0, h_tau))?, at(moved(0.0, -h_tau))?, h_tau);
-    let determinant = by_gain[0] * by_tau[1] - by_gain[1] * by_tau[0];
+    let by_p = quotient(at(moved(h_p, 0.0))?, at(moved(-h_p, 0.0))?, h_p);
+    let by_q = quotient(at(moved(0.0, h_q))?, at(moved(0.0, -h_q))?, h_q);
+    let determinant = by_p[0] * by_q[1] - by_p[1] * by_q[0];
     Some([
-        (here[0] * by_tau[1] - here[1] * by_tau[0]) / determinant,
-        (by_gain[0] * here[1] - by_gain[1] * here[0]) / determinant,
+        (here[0] * by_q[1] - here[1] * by_q[0]) / determinant,
+        (by_p[0] * here[1] - by_p[1] * here[0]) / determinant,
     ])
 }

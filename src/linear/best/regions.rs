@@ -1,8 +1,8 @@
-//! The stable regions of a box in the plane of gain and delay: lobes.
+//! The stable regions of a box in a plane of two parameters p and q: lobes, where q is the delay.
 //!
-//! The stable delays of a gain are known, in closed form where they can be, so only the gain is
-//! sampled: evenly, and ever more densely towards each gain at which the crossings change
-//! their number, where lobes end in a point. Stretches of neighbouring gains belong to the same
+//! The stable q of a p are known, in closed form where they can be, so only p is sampled: evenly,
+//! and ever more densely towards each p at which the crossings change their number, where
+//! lobes end in a point. Stretches of neighbouring p belong to the same
 //! region where they overlap or lie between the same two crossing curves.
 
 use super::search::{Family, Place, Search};
@@ -21,14 +21,14 @@ const BLURRED: f64 = 1e-14;
 /// Stable intervals looked at on one line.
 pub(super) const MOST_STRETCHES: usize = 1024;
 
-/// Stable delays of one sampled gain, cut at the edges of the box.
+/// Stable q of one sampled p, cut at the edges of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// The gain.
-    pub gain: f64,
-    /// The shortest delay.
+    /// p.
+    pub p: f64,
+    /// The smallest q.
     pub from: f64,
-    /// The longest delay.
+    /// The largest q.
     pub to: f64,
     /// The crossings that bound the interval; none where it is open, or where that is not known.
     pub bounds: (Option<Bound>, Option<Bound>),
@@ -38,28 +38,28 @@ pub struct Stretch {
 pub type Bound = (usize, u64);
 
 impl Stretch {
-    /// The stretch between two delays, cut at the edges of `delays`; none where the box only
+    /// The stretch between two q, cut at the edges of a range; none where the box only
     /// touches it, but for a box that is a line itself.
     pub(super) fn cut(
-        gain: f64,
+        p: f64,
         (from, to): (f64, f64),
-        (shortest, longest): (f64, f64),
+        (least, most): (f64, f64),
         bounds: (Option<Bound>, Option<Bound>),
     ) -> Option<Self> {
         let stretch = Self {
-            gain,
-            from: from.max(shortest),
-            to: to.min(longest),
+            p,
+            from: from.max(least),
+            to: to.min(most),
             bounds,
         };
-        let wide = stretch.to - stretch.from > NARROWEST * (1.0 + stretch.to);
-        (shortest == longest || wide).then_some(stretch)
+        let wide = stretch.to - stretch.from > NARROWEST * (1.0 + stretch.to.abs());
+        (least == most || wide).then_some(stretch)
     }
 
     fn touches(&self, other: &Self) -> bool {
         let (from, to) = (self.from.max(other.from), self.to.min(other.to));
         // Regions of gains of both signs meet at their ends where control is weak.
-        let overlap = to - from > NARROWEST * (1.0 + to);
+        let overlap = to - from > NARROWEST * (1.0 + to.abs());
         // Of a box that is a line a stretch is a point.
         let points = (self.from, self.to) == (other.from, other.to) && self.from == self.to;
         overlap || points || (self.bounds == other.bounds && self.bounds.0.is_some())
@@ -68,24 +68,24 @@ impl Stretch {
     /// The place at the fraction `s` of the stretch.
     pub(super) fn at(&self, s: f64) -> Place {
         Place {
-            gain: self.gain,
-            tau: self.from + s * (self.to - self.from),
+            p: self.p,
+            q: self.from + s * (self.to - self.from),
         }
     }
 }
 
-/// The stretches of one region, by rising gain and delay. Never empty.
+/// The stretches of one region, by rising p and q. Never empty.
 pub(super) type Stretches = Vec<Stretch>;
 
-/// The regions of the box that a sampled gain crosses, by their shortest delay; only some of them
-/// once `stop` is set.
+/// The regions of the box that a sampled p crosses, by their smallest q; only some of them once
+/// `stop` is set.
 pub(super) fn stable_regions(search: &Search<impl Family>, stop: &Stop) -> Vec<Stretches> {
-    let gains = sampled_gains(search, stop);
-    let lines: Vec<Stretches> = gains
+    let values = sampled_values(search, stop);
+    let lines: Vec<Stretches> = values
         .iter()
-        .map(|&gain| match stop.is_set() {
+        .map(|&p| match stop.is_set() {
             true => Stretches::new(),
-            false => search.family.stretches(gain, search.delays),
+            false => search.family.stretches(p, search.q),
         })
         .collect();
     let offsets: Vec<usize> = lines
@@ -95,7 +95,7 @@ pub(super) fn stable_regions(search: &Search<impl Family>, stop: &Stop) -> Vec<S
         })
         .collect();
     let mut groups = Sets::new(lines.iter().map(Vec::len).sum());
-    let pairs = neighbours(&gains, search.gains.1 - search.gains.0);
+    let pairs = neighbours(&values, search.p.1 - search.p.0);
     for (i, j) in pairs.take_while(|_| !stop.is_set()) {
         for (p, here) in lines[i].iter().enumerate() {
             for (q, there) in lines[j].iter().enumerate() {
@@ -115,41 +115,41 @@ pub(super) fn stable_regions(search: &Search<impl Family>, stop: &Stop) -> Vec<S
         }
     }
     let mut regions: Vec<Stretches> = regions.into_iter().map(|(_, r)| r).collect();
-    let shortest = |r: &Stretches| r.iter().map(|s| s.from).fold(f64::INFINITY, f64::min);
-    regions.sort_by(|p, q| shortest(p).total_cmp(&shortest(q)));
+    let smallest = |r: &Stretches| r.iter().map(|s| s.from).fold(f64::INFINITY, f64::min);
+    regions.sort_by(|p, q| smallest(p).total_cmp(&smallest(q)));
     regions
 }
 
-/// Pairs of rising `gains`, by number: each with the next one, and with all that are as near to it
+/// Pairs of rising `values`, by number: each with the next one, and with all that are as near to it
 /// as rounding. Where a lobe ends in a point, one of these may show it and its neighbour not.
-fn neighbours(gains: &[f64], width: f64) -> impl Iterator<Item = (usize, usize)> {
-    let near = move |i: usize, j: usize| j == i + 1 || gains[j] - gains[i] <= BLURRED * width;
-    (0..gains.len()).flat_map(move |i| {
-        let next = (i + 1..gains.len()).take_while(move |&j| near(i, j));
+fn neighbours(values: &[f64], width: f64) -> impl Iterator<Item = (usize, usize)> {
+    let near = move |i: usize, j: usize| j == i + 1 || values[j] - values[i] <= BLURRED * width;
+    (0..values.len()).flat_map(move |i| {
+        let next = (i + 1..values.len()).take_while(move |&j| near(i, j));
         next.map(move |j| (i, j))
     })
 }
 
-/// The gains at which stable delays are asked for, rising.
-fn sampled_gains(search: &Search<impl Family>, stop: &Stop) -> Vec<f64> {
-    let (from, to) = search.gains;
+/// The p at which stable q are asked for, rising.
+fn sampled_values(search: &Search<impl Family>, stop: &Stop) -> Vec<f64> {
+    let (from, to) = search.p;
     let width = to - from;
     if width == 0.0 {
         return vec![from];
     }
-    let mut gains: Vec<f64> = (0..=EVEN_LINES)
+    let mut values: Vec<f64> = (0..=EVEN_LINES)
         .map(|i| from + width * (i as f64 / EVEN_LINES as f64))
         .collect();
-    for breakpoint in search.family.breakpoints(&gains, stop) {
+    for breakpoint in search.family.breakpoints(&values, stop) {
         for step in 1..=LINES_AT_BREAKPOINT {
             let by = width * power(CLOSER, step);
-            gains.extend([breakpoint - by, breakpoint + by]);
+            values.extend([breakpoint - by, breakpoint + by]);
         }
     }
-    gains.retain(|gain| (from..=to).contains(gain));
-    gains.sort_by(f64::total_cmp);
-    gains.dedup();
-    gains
+    values.retain(|p| (from..=to).contains(p));
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
 }
 
 /// Sets that are joined one by one.

@@ -32,9 +32,9 @@ impl Rig {
     /// slope of friction.
     fn changed(&self, place: Place, changes: Changes) -> (Groups, f64) {
         let [k, delay, slope] = changes.map(|d| 1.0 + d);
-        let Groups { a_v, a_n, .. } = self.letter.groups(place.gain);
+        let Groups { a_v, a_n, .. } = self.letter.groups(place.p);
         let b = self.letter.slope() * slope + self.letter.dashpots.sum();
-        (Groups::new(b, a_v * k, a_n * k), place.tau * delay)
+        (Groups::new(b, a_v * k, a_n * k), place.q * delay)
     }
 
     /// The spectral abscissa at a place with `changes`; infinite where it is not known. Where it is
@@ -51,8 +51,8 @@ impl Rig {
 
     /// The spectral abscissa at a place; infinite where it is not known.
     pub(super) fn abscissa(&self, finder: &mut RootFinder, place: Place) -> f64 {
-        let groups = self.letter.groups(place.gain);
-        abscissa_at(self.beyond, finder, (groups, place.tau), f64::INFINITY)
+        let groups = self.letter.groups(place.p);
+        abscissa_at(self.beyond, finder, (groups, place.q), f64::INFINITY)
     }
 
     /// The stability radius at a place for the required decay rate `decay` ≥ 0, as a part of the
@@ -66,8 +66,8 @@ impl Rig {
         stop: &Stop,
     ) -> Radius {
         let setting = Setting {
-            groups: self.letter.groups(place.gain),
-            tau: place.tau,
+            groups: self.letter.groups(place.p),
+            tau: place.q,
             decay,
         };
         let still = self.letter.dashpots.sum();

@@ -179,7 +179,7 @@ pub fn robust(search: &Search<Rig>, best: &Best, spread: Changes, stop: &Stop) -
             break;
         }
         let value = |place| worst.at(place, f64::INFINITY).0;
-        for start in far_apart(lattice(&region.stretches, region.gains, value)) {
+        for start in far_apart(lattice(&region.stretches, region.p, value)) {
             let (place, value) = worst.descend(&start, 1.0);
             if found.as_ref().is_none_or(|least| value < least.value) {
                 found = Some(Start {
@@ -219,8 +219,8 @@ impl Worst<'_> {
         let place = start.place;
         let (value, worst_at) = self.at(place, f64::INFINITY);
         Robust {
-            gain: place.gain,
-            tau: place.tau,
+            gain: place.p,
+            tau: place.q,
             abscissa: self.in_the_middle(place),
             worst_abscissa: proof.unwrap_or(value),
             worst_at,

@@ -132,11 +132,11 @@ impl SampledPlane {
         let best = self.optimum(pieces, stop);
         let h = self.sample_time();
         let ends = pieces.iter().map(|piece| piece.gains);
-        let gains = ends.fold((best.gain, best.gain), |all, piece| {
+        let gains = ends.fold((best.p, best.p), |all, piece| {
             (all.0.min(piece.0), all.1.max(piece.1))
         });
         let delays = pieces.iter().map(|piece| piece.multiple as f64 * h);
-        let delays = delays.fold((best.tau, best.tau), |all, tau| {
+        let delays = delays.fold((best.q, best.q), |all, tau| {
             (all.0.min(tau), all.1.max(tau))
         });
         Region::without_stretches(gains, delays, best)
@@ -250,8 +250,8 @@ impl SampledPlane {
         let (kind, frequencies) = self.kind(best, &sharing);
         let errors = sharing.iter().map(|root| root.error);
         Optimum {
-            gain: best.gain,
-            tau,
+            p: best.gain,
+            q: tau,
             abscissa: spectrum.abscissa,
             frequencies,
             kind,

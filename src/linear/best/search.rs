@@ -1,4 +1,5 @@
-//! What is searched: an equation over a box of one gain and the delay, everything else fixed.
+//! What is searched: an equation over a box of two parameters p and q, everything else fixed. One of
+//! them may be the delay.
 
 use num_complex::Complex64;
 
@@ -8,12 +9,14 @@ use crate::linear::newton::Root;
 use crate::linear::spectrum::RootFinder;
 use crate::model::stop::Stop;
 
-/// A characteristic equation over the plane of a gain and the delay.
-///
-/// The gain is any parameter that the equation depends on smoothly.
+/// A characteristic equation over the plane of two parameters p and q, on which it depends
+/// smoothly.
 pub trait Family {
     /// The equation at one place, but for the delay.
     type Setting;
+
+    /// The delay at a place.
+    fn delay(&self, place: Place) -> f64;
 
     /// The equation at a place; none where it has none.
     fn setting(&self, place: Place) -> Option<Self::Setting>;
@@ -24,10 +27,10 @@ pub trait Family {
     /// D, D′, D″ and D‴.
     fn derivatives(setting: &Self::Setting, tau: f64, lambda: Complex64) -> [Complex64; 4];
 
-    /// How D and D′ change with the gain and the delay.
+    /// How D and D′ change with p and q.
     fn by_parameters(&self, place: Place, lambda: Complex64) -> Option<ByParameters>;
 
-    /// ∂Re λ/∂gain and ∂Re λ/∂τ at a simple root λ.
+    /// ∂Re λ/∂p and ∂Re λ/∂q at a simple root λ.
     fn gradient(&self, place: Place, lambda: Complex64) -> Option<[f64; 2]>;
 
     /// The spectral abscissa at a place, or its supremum where roots accumulate; infinite where it
@@ -37,18 +40,17 @@ pub trait Family {
             return f64::INFINITY;
         };
         let equation = Self::equation(&setting);
-        let roots = finder.rightmost(equation, place.tau, 1, f64::NEG_INFINITY);
+        let roots = finder.rightmost(equation, self.delay(place), 1, f64::NEG_INFINITY);
         let first = roots.ok().and_then(|roots| roots.first());
         first.map_or(f64::INFINITY, |root| root.lambda.re)
     }
 
-    /// The gains at which the stable delays may begin or end all at once. In no order, not all of
-    /// them between those of `gains`; only some of them once `stop` is set.
-    fn breakpoints(&self, gains: &[f64], stop: &Stop) -> Vec<f64>;
+    /// The p at which the stable q may begin or end all at once. In no order, not all of them
+    /// between those of `values`; only some of them once `stop` is set.
+    fn breakpoints(&self, values: &[f64], stop: &Stop) -> Vec<f64>;
 
-    /// The stable delays of a gain between the shortest and the longest of `delays`, by growing
-    /// delay, without what the box only touches.
-    fn stretches(&self, gain: f64, delays: (f64, f64)) -> Vec<Stretch>;
+    /// The stable q of a p between the ends of `range`, rising, without what the box only touches.
+    fn stretches(&self, p: f64, range: (f64, f64)) -> Vec<Stretch>;
 }
 
 /// How near, relative, to the line at which roots accumulate a line is taken for it. Where ρ is
@@ -61,45 +63,45 @@ pub(super) fn beside_essential(line: f64, essential: f64) -> bool {
     essential.is_finite() && line - essential <= CLOSE * essential.abs()
 }
 
-/// Derivatives of D and D′ with respect to the gain and the delay, at fixed λ.
+/// Derivatives of D and D′ with respect to p and q, at fixed λ.
 #[derive(Debug, Clone, Copy)]
 pub struct ByParameters {
-    /// ∂D/∂gain.
-    pub gain: Complex64,
-    /// ∂D/∂τ.
-    pub tau: Complex64,
-    /// ∂D′/∂gain.
-    pub slope_gain: Complex64,
-    /// ∂D′/∂τ.
-    pub slope_tau: Complex64,
+    /// ∂D/∂p.
+    pub p: Complex64,
+    /// ∂D/∂q.
+    pub q: Complex64,
+    /// ∂D′/∂p.
+    pub slope_p: Complex64,
+    /// ∂D′/∂q.
+    pub slope_q: Complex64,
 }
 
-/// A search for the settings of fastest decay; delays in the unit of time of the family.
+/// A search for the settings of fastest decay; a delay in the unit of time of the family.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search<F> {
     /// The equation.
     pub family: F,
-    /// The gains to search, from ≤ to.
-    pub gains: (f64, f64),
-    /// The delays to search, 0 ≤ from ≤ to.
-    pub delays: (f64, f64),
+    /// The p to search, from ≤ to.
+    pub p: (f64, f64),
+    /// The q to search, from ≤ to; from 0 on where it is the delay.
+    pub q: (f64, f64),
 }
 
 /// A place in the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// The searched gain.
-    pub gain: f64,
-    /// The delay.
-    pub tau: f64,
+    /// p, such as a gain.
+    pub p: f64,
+    /// q, such as the delay.
+    pub q: f64,
 }
 
 impl<F> Search<F> {
     /// The nearest place of the box.
     pub(super) fn clamp(&self, place: Place) -> Place {
         Place {
-            gain: place.gain.clamp(self.gains.0, self.gains.1),
-            tau: place.tau.clamp(self.delays.0, self.delays.1),
+            p: place.p.clamp(self.p.0, self.p.1),
+            q: place.q.clamp(self.q.0, self.q.1),
         }
     }
 
@@ -111,15 +113,15 @@ impl<F> Search<F> {
             [from, to].into_iter().find(near).unwrap_or(value)
         };
         Place {
-            gain: snapped(place.gain, self.gains, lengths.0),
-            tau: snapped(place.tau, self.delays, lengths.1),
+            p: snapped(place.p, self.p, lengths.0),
+            q: snapped(place.q, self.q, lengths.1),
         }
     }
 
-    /// The gain, and the delay, lies on an edge of the box.
+    /// p, and q, lies on an edge of the box.
     pub(super) fn on_edge(&self, place: Place) -> (bool, bool) {
         let on = |value: f64, (from, to): (f64, f64)| value <= from || value >= to;
-        (on(place.gain, self.gains), on(place.tau, self.delays))
+        (on(place.p, self.p), on(place.q, self.q))
     }
 }
 
@@ -171,7 +173,12 @@ impl Evaluator {
             return &[];
         };
         self.finder
-            .rightmost(F::equation(&setting), place.tau, wanted, f64::NEG_INFINITY)
+            .rightmost(
+                F::equation(&setting),
+                search.family.delay(place),
+                wanted,
+                f64::NEG_INFINITY,
+            )
             .unwrap_or_default()
     }
 }

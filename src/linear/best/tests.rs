@@ -14,8 +14,8 @@ fn velocity(b: f64) -> Search<Letter> {
             fixed: Groups::new(b, 0.0, 0.0),
             gain: SearchedGain::Velocity,
         },
-        gains: (-2.0, 1.0),
-        delays: (0.0, 25.0),
+        p: (-2.0, 1.0),
+        q: (0.0, 25.0),
     }
 }
 
@@ -26,7 +26,7 @@ fn load(b: f64) -> Search<Letter> {
             gain: SearchedGain::Load,
             ..of.family
         },
-        gains: (-8.0, 1.0),
+        p: (-8.0, 1.0),
         ..of
     }
 }
@@ -36,7 +36,7 @@ fn searches() -> impl Iterator<Item = Search<Letter>> {
 }
 
 fn value(search: &Search<Letter>, gain: f64, tau: f64) -> f64 {
-    Evaluator::default().abscissa(search, Place { gain, tau })
+    Evaluator::default().abscissa(search, Place { p: gain, q: tau })
 }
 
 /// No place around any optimum, at any scale and in any direction, is better.
@@ -45,8 +45,8 @@ fn nothing_around_an_optimum_is_better() {
     for search in searches() {
         for Region {
             best,
-            gains,
-            delays,
+            p: gains,
+            q: delays,
             ..
         } in best(&search, &Stop::default()).regions
         {
@@ -56,10 +56,7 @@ fn nothing_around_an_optimum_is_better() {
                 for step in 0..64 {
                     let (sin, cos) = (f64::from(step) * std::f64::consts::TAU / 64.0).sin_cos();
                     let size = 0.1_f64.powi(scale);
-                    let (gain, tau) = (
-                        best.gain + size * width * cos,
-                        best.tau + size * height * sin,
-                    );
+                    let (gain, tau) = (best.p + size * width * cos, best.q + size * height * sin);
                     let there = value(&search, gain, tau);
                     assert!(
                         there >= best.abscissa - best.margin,
@@ -76,11 +73,8 @@ fn zoomed(search: &Search<Letter>, region: &Region) -> (f64, f64, f64) {
     const CELLS: i32 = 40;
     let mut centre = (f64::NAN, f64::NAN, f64::INFINITY);
     let (mut from, mut size) = (
-        (region.gains.0, region.delays.0),
-        (
-            region.gains.1 - region.gains.0,
-            region.delays.1 - region.delays.0,
-        ),
+        (region.p.0, region.q.0),
+        (region.p.1 - region.p.0, region.q.1 - region.q.0),
     );
     for _ in 0..16 {
         for i in 0..=CELLS {
@@ -119,7 +113,7 @@ fn optima_agree_with_a_zoom_by_brute_force() {
             "{found:?} {abscissa}"
         );
         assert!(
-            (gain - found.gain).abs() < place && (tau - found.tau).abs() < place,
+            (gain - found.p).abs() < place && (tau - found.q).abs() < place,
             "{found:?} {gain} {tau}"
         );
     }
@@ -141,8 +135,8 @@ fn optima_are_at_least_as_good_as_a_fine_grid() {
         for i in 0..points {
             for j in 0..points {
                 let place = Place {
-                    gain: on(search.gains, i),
-                    tau: on((0.0, 8.0), j),
+                    p: on(search.p, i),
+                    q: on((0.0, 8.0), j),
                 };
                 assert!(finder.abscissa(&search, place) >= found.abscissa - found.margin);
             }
@@ -156,10 +150,10 @@ fn optima_are_at_least_as_good_as_a_fine_grid() {
 fn kinds_are_what_they_say() {
     for search in searches() {
         for Region { best, .. } in best(&search, &Stop::default()).regions {
-            let groups = search.family.groups(best.gain);
+            let groups = search.family.groups(best.p);
             let lambda = Complex64::new(best.abscissa, best.frequency());
-            let jet = Jet::at(groups, best.tau, lambda);
-            let rounding = 64.0 * jet.rounding(groups, best.tau, lambda);
+            let jet = Jet::at(groups, best.q, lambda);
+            let rounding = 64.0 * jet.rounding(groups, best.q, lambda);
             assert!(
                 jet.value.norm() < rounding && jet.first.norm() < 10.0 * rounding,
                 "{best:?} {jet:?}"
@@ -172,7 +166,7 @@ fn kinds_are_what_they_say() {
                 _ => panic!("{best:?}"),
             }
             assert_eq!(
-                roots_right_of(groups, best.tau, best.abscissa + 0.02),
+                roots_right_of(groups, best.q, best.abscissa + 0.02),
                 Some(0)
             );
         }
@@ -194,10 +188,10 @@ fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
             let (lambda, a_n) = gain(tau);
             a_n * (-lambda * tau).exp() + 2.0 / (tau * tau)
         };
-        let tau = crate::linear::roots::bisect(0.9 * found.tau, 1.1 * found.tau, left);
+        let tau = crate::linear::roots::bisect(0.9 * found.q, 1.1 * found.q, left);
         let (lambda, a_n) = gain(tau);
         assert!(
-            (tau - found.tau).abs() < 1e-12 && (a_n - found.gain).abs() < 1e-11,
+            (tau - found.q).abs() < 1e-12 && (a_n - found.p).abs() < 1e-11,
             "{found:?} {tau}"
         );
         assert!((lambda - found.abscissa).abs() < 1e-11);
@@ -241,7 +235,7 @@ fn tiny_lobes_are_found() {
         let best = &found.regions[0].best;
         assert!(best.abscissa < 0.0 && best.certified, "{best:?}");
         assert!(
-            (best.tau - end.tau).abs() < 4.0 * by.sqrt() && (best.gain - end.gain).abs() < by,
+            (best.q - end.tau).abs() < 4.0 * by.sqrt() && (best.p - end.gain).abs() < by,
             "{best:?}"
         );
     }
@@ -256,11 +250,11 @@ fn tiny_lobes_are_found() {
 fn boxes_without_stable_settings_give_the_least_unstable_one() {
     for search in [
         Search {
-            gains: (0.1, 1.0),
+            p: (0.1, 1.0),
             ..velocity(-0.3)
         },
         Search {
-            gains: (-0.2, 0.2),
+            p: (-0.2, 0.2),
             ..load(-0.5)
         },
         velocity(-1.5),
@@ -274,8 +268,8 @@ fn boxes_without_stable_settings_give_the_least_unstable_one() {
             let (sin, cos) = (f64::from(step) * std::f64::consts::TAU / 64.0).sin_cos();
             for size in [0.1, 1e-2, 1e-4] {
                 let place = search.clamp(Place {
-                    gain: overall.gain + size * cos,
-                    tau: overall.tau + size * sin,
+                    p: overall.p + size * cos,
+                    q: overall.q + size * sin,
                 });
                 let there = Evaluator::default().abscissa(&search, place);
                 assert!(
@@ -291,42 +285,42 @@ fn boxes_without_stable_settings_give_the_least_unstable_one() {
 #[test]
 fn degenerate_boxes() {
     let line = Search {
-        gains: (-0.3, -0.3),
-        delays: (3.0, 5.0),
+        p: (-0.3, -0.3),
+        q: (3.0, 5.0),
         ..velocity(-0.3)
     };
     let along = best(&line, &Stop::default()).overall;
-    assert_eq!((along.gain, along.kind), (-0.3, Kind::Edge));
+    assert_eq!((along.p, along.kind), (-0.3, Kind::Edge));
     for i in 0..=2000 {
         assert!(value(&line, -0.3, 3.0 + f64::from(i) * 1e-3) >= along.abscissa - along.margin);
     }
     let across = best(
         &Search {
-            gains: (-1.0, 0.0),
-            delays: (4.0, 4.0),
+            p: (-1.0, 0.0),
+            q: (4.0, 4.0),
             ..velocity(-0.3)
         },
         &Stop::default(),
     )
     .overall;
-    assert_eq!((across.tau, across.kind), (4.0, Kind::Edge));
+    assert_eq!((across.q, across.kind), (4.0, Kind::Edge));
     for i in 0..=1000 {
         assert!(value(&line, f64::from(i) * -1e-3, 4.0) >= across.abscissa - across.margin);
     }
     let point = best(
         &Search {
-            gains: (-0.3, -0.3),
-            delays: (4.0, 4.0),
+            p: (-0.3, -0.3),
+            q: (4.0, 4.0),
             ..velocity(-0.3)
         },
         &Stop::default(),
     )
     .overall;
-    assert_eq!((point.gain, point.tau, point.kind), (-0.3, 4.0, Kind::Edge));
+    assert_eq!((point.p, point.q, point.kind), (-0.3, 4.0, Kind::Edge));
     assert_eq!(point.abscissa, value(&line, -0.3, 4.0));
     let no_delay = best(
         &Search {
-            delays: (0.0, 0.0),
+            q: (0.0, 0.0),
             ..velocity(0.2)
         },
         &Stop::default(),
@@ -366,8 +360,8 @@ fn the_other_gain_may_act_too() {
                 dashpots: Dashpots::default(),
                 gain,
             },
-            gains: (-3.0, 3.0),
-            delays: (0.0, 15.0),
+            p: (-3.0, 3.0),
+            q: (0.0, 15.0),
         };
         let found = best(&search, &Stop::default());
         assert!(!found.regions.is_empty());
@@ -387,11 +381,11 @@ fn a_valley_of_double_roots_is_followed_to_the_edge() {
             fixed: Groups::new(0.173_932_752, -0.915_096_374, 0.0),
             gain: SearchedGain::Load,
         },
-        gains: (-10.0, 5.0),
-        delays: (0.0, 25.0),
+        p: (-10.0, 5.0),
+        q: (0.0, 25.0),
     };
     let found = best(&search, &Stop::default()).overall;
-    assert_eq!((found.gain, found.kind), (-10.0, Kind::Edge), "{found:?}");
+    assert_eq!((found.p, found.kind), (-10.0, Kind::Edge), "{found:?}");
     assert!(
         (found.abscissa - -0.9944).abs() < 1e-4 && found.certified,
         "{found:?}"
@@ -406,8 +400,8 @@ fn nested(search: &Search<Letter>, gains: usize, delays: usize) -> (f64, f64, f6
         |(from, to): (f64, f64), i: usize, n: usize| from + (to - from) * (i as f64 / n as f64);
     let mut evaluator = Evaluator::default();
     let mut at_gain = |gain: f64, around: Option<(f64, f64)>| -> (f64, f64) {
-        let range = around.unwrap_or(search.delays);
-        let mut at = |tau: f64| evaluator.abscissa(search, search.clamp(Place { gain, tau }));
+        let range = around.unwrap_or(search.q);
+        let mut at = |tau: f64| evaluator.abscissa(search, search.clamp(Place { p: gain, q: tau }));
         let values: Vec<f64> = (0..=delays).map(|j| at(spread(range, j, delays))).collect();
         let mut best = (f64::NAN, f64::INFINITY);
         for j in 0..=delays {
@@ -430,7 +424,7 @@ fn nested(search: &Search<Letter>, gains: usize, delays: usize) -> (f64, f64, f6
         best
     };
     let rows: Vec<(f64, f64)> = (0..=gains)
-        .map(|i| at_gain(spread(search.gains, i, gains), None))
+        .map(|i| at_gain(spread(search.p, i, gains), None))
         .collect();
     let mut best = (f64::NAN, f64::NAN, f64::INFINITY);
     for i in 0..=gains {
@@ -443,14 +437,11 @@ fn nested(search: &Search<Letter>, gains: usize, delays: usize) -> (f64, f64, f6
             taus.iter().copied().fold(f64::INFINITY, f64::min),
             taus.iter().copied().fold(0.0, f64::max),
         );
-        let pad = 2.0 * (search.delays.1 - search.delays.0) / delays as f64;
-        let range = (
-            (from - pad).max(search.delays.0),
-            (to + pad).min(search.delays.1),
-        );
+        let pad = 2.0 * (search.q.1 - search.q.0) / delays as f64;
+        let range = ((from - pad).max(search.q.0), (to + pad).min(search.q.1));
         let (gain, value) = golden(
-            spread(search.gains, low, gains),
-            spread(search.gains, high, gains),
+            spread(search.p, low, gains),
+            spread(search.p, high, gains),
             &mut |gain| at_gain(gain, Some(range)).1,
         );
         if value < best.2 {
@@ -529,8 +520,8 @@ fn by_chance(number: u64) -> Search<Letter> {
             },
             gain,
         },
-        gains: (low.min(high), low.max(high)),
-        delays: (0.0, chance(0.5, 15.0)),
+        p: (low.min(high), low.max(high)),
+        q: (0.0, chance(0.5, 15.0)),
     }
 }
 
@@ -558,8 +549,8 @@ fn a_place_at_rest_is_no_optimum_where_the_valley_falls_from_it() {
             fixed: Groups::new(-1.085_950_199_932_85, -0.562_008_325_737_243_9, 0.0),
             gain: SearchedGain::Load,
         },
-        gains: (-5.307_106_585_327_528, -1.353_852_600_002_571),
-        delays: (0.0, 12.481_464_154_198_896),
+        p: (-5.307_106_585_327_528, -1.353_852_600_002_571),
+        q: (0.0, 12.481_464_154_198_896),
     };
     let found = best(&search, &Stop::default()).overall;
     assert!((found.abscissa - -1.803_408_08).abs() < 1e-7, "{found:?}");

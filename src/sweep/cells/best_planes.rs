@@ -2,6 +2,7 @@
 
 use super::boundaries::plane_spanned;
 use crate::answers::best::{BestSettings, Ranges, best_settings};
+use crate::answers::search_plane::SearchPlane;
 use crate::model::stop::Stop;
 use crate::sweep::plan::Plan;
 
@@ -18,8 +19,9 @@ pub fn best_of_plane(plan: &Plan, index: &[usize], stop: &Stop) -> Option<BestSe
     let (p, tau) = plan.best_plane()?;
     let axes = &plan.spec.axes;
     let ranges = Ranges {
-        gain: axes[p].range(),
-        tau: axes[tau].range(),
+        p: axes[p].range(),
+        q: axes[tau].range(),
     };
-    best_settings(&plan.setting(index), &axes[p].parameter, &ranges, stop).ok()
+    let plane = SearchPlane::with_delay(&axes[p].parameter);
+    best_settings(&plan.setting(index), &plane, &ranges, stop).ok()
 }

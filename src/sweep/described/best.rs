@@ -41,8 +41,8 @@ impl BestRow {
         let kind = Kind::ALL.iter().position(|&kind| kind == best.kind);
         Self {
             numbers: [
-                best.gain,
-                best.tau,
+                best.p,
+                best.q,
                 best.abscissa,
                 best.frequency(),
                 best.relaxation_time().unwrap_or(f64::NAN),
