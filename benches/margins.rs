@@ -8,13 +8,18 @@
 //! Then the same at settings with nothing, memory, latency or lags beyond the letter's feedback, by
 //! the way that knows of them.
 //!
+//! Before all that, margins of loops of degree 4 that are given by P and Q.
+//!
 //! Then the stability radius over a spread of laws, gains and delays, of which some are hard: the
 //! time of each once.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use slipmap::linear::margins::{self, Beyond, Case, Limits, MarginSearch, Setting, SlidingLaw};
+use slipmap::linear::general::System;
+use slipmap::linear::margins::{
+    self, Beyond, Case, Limits, MarginSearch, Setting, SlidingLaw, SystemLoop,
+};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Channel, Control, FrictionLaw, Groups, Lags, Oscillator, Table};
 
@@ -24,6 +29,7 @@ const STEPS: u32 = 64;
 const LAW_SETTINGS: usize = 500;
 /// Stable settings of each kind beyond the letter.
 const BEYOND_SETTINGS: usize = 300;
+const LOOPS: usize = 2000;
 
 fn settings() -> Vec<Setting> {
     let mut state = 5_u64;
@@ -270,7 +276,86 @@ fn radii_of_laws() {
     );
 }
 
+/// Stable loops of degree 4, with their delays: two oscillators under a controller of first order.
+fn stable_loops() -> Vec<(System, f64)> {
+    let mut state = 23_u64;
+    let mut between = |from: f64, to: f64| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        from + (to - from) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+    };
+    let mut loops = Vec::new();
+    while loops.len() < LOOPS {
+        let [a, b] = [0; 2].map(|_| (between(0.2, 5.0), between(0.02, 0.8)));
+        let [c, e] = [a, b].map(|(size, damping)| [size * size, 2.0 * damping * size]);
+        let p = [
+            c[0] * e[0],
+            c[0] * e[1] + c[1] * e[0],
+            c[0] + e[0] + c[1] * e[1],
+            c[1] + e[1],
+            1.0,
+        ];
+        let size = between(-1.0, 1.0) * p[0];
+        let system = System::of_coefficients(&p, &[size, between(-1.0, 1.0) * size]);
+        let (system, tau) = (system.expect("a small degree"), between(0.05, 3.0));
+        let of = SystemLoop::new(&system, tau).expect("a loop");
+        if of.stable() {
+            loops.push((system, tau));
+        }
+    }
+    loops
+}
+
+/// Mean times of their margins.
+fn loops() {
+    type Way<'w> = (&'w str, &'w dyn Fn(&SystemLoop));
+    let loops = stable_loops();
+    let made = |(system, tau): &(System, f64)| SystemLoop::new(system, *tau).expect("a loop");
+    let gain = |of: &SystemLoop| {
+        black_box(MarginSearch::default().gain_margin(of));
+    };
+    let phase = |of: &SystemLoop| {
+        black_box(of.phase());
+    };
+    let latency = |of: &SystemLoop| {
+        black_box(of.latency());
+    };
+    let modulus = |of: &SystemLoop| {
+        black_box(of.modulus());
+    };
+    let all = |of: &SystemLoop| {
+        gain(of);
+        phase(of);
+        latency(of);
+        modulus(of);
+    };
+    let ways: [Way; 5] = [
+        ("gain", &gain),
+        ("phase", &phase),
+        ("latency", &latency),
+        ("modulus", &modulus),
+        ("all of it", &all),
+    ];
+    println!("{LOOPS} stable loops of degree 4");
+    for (name, way) in ways {
+        let mut times: Vec<Duration> = loops
+            .iter()
+            .map(|of| {
+                let start = Instant::now();
+                way(&made(of));
+                start.elapsed()
+            })
+            .collect();
+        times.sort();
+        let mean = times.iter().sum::<Duration>() / times.len() as u32;
+        let [median, longest] = [times.len() / 2, times.len() - 1].map(|i| times[i]);
+        println!("{name:>10}: mean {mean:.2?}, median {median:.2?}, longest {longest:.2?}");
+    }
+}
+
 fn main() {
+    loops();
     let settings = settings();
     let mut search = MarginSearch::default();
     let limits: Vec<Limits> = settings.iter().map(|s| search.gain(s)).collect();

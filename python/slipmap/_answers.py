@@ -162,11 +162,13 @@ class Margins(Answer):
     gain_margin: Record | None
     phase_margin: float
     latency_margin: float
+    modulus_margin: float
     tau_margin: Record | None
     mu_prime_margin: Record | None
     v0_margin: Record | None
     stability_radius: float
     stability_box: Record | None
+    crossing_frequencies: Record
     undecided: tuple[str, ...]
     looked_up_to: Record
     fit: Record | None

@@ -23,7 +23,7 @@ use slipmap::explore::stability::Wanted;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::model::stop::Stop;
 use slipmap::setting::basin::{Basin, Over};
-use slipmap::setting::command::{command_line, point_command, vc_command};
+use slipmap::setting::command::{command_at, command_line, point_command, vc_command};
 use slipmap::setting::law_kind::LawKind;
 use slipmap::setting::point_file::{PointOf, PointSpec};
 use slipmap::setting::quantity::Quantity;
@@ -147,23 +147,23 @@ fn margins(py: Python, spec: &PointSpec, options: &Options, text: &str) -> PyRes
         return Err(of_input(py, why));
     }
     let found = heeding(py, |stop| Margins::at(&spec.setting, decay, stop))?;
-    let found = found.map_err(|error| of_problem(py, error.into(), text))?;
+    let found = found.map_err(|why| of_problem(py, why.into(), text))?;
     let unknown = || {
-        let detail = if spec.setting.system().is_some() {
-            "margins are not known of a system from a file".to_owned()
+        let (detail, help) = if spec.setting.system().is_some() {
+            let why = "decay: margins of a system from a file are those of stability alone";
+            (why.to_owned(), "leave decay out")
         } else {
             let law = spec.setting.law().map_or("", LawKind::name);
-            format!("margins of the {law} law are not known: it has a state")
+            (
+                format!("margins of the {law} law are not known: it has a state"),
+                "point() gives its delay margin and latency margin",
+            )
         };
         let problem = Problem::new(Why::Unprocessable, detail);
-        of_problem(
-            py,
-            problem.help("point() gives its delay margin and latency margin"),
-            text,
-        )
+        of_problem(py, problem.help(help), text)
     };
     let found = found.ok_or_else(unknown)?;
-    let command = command_line("margins", &spec.setting, |p| of_point(&spec.setting, p));
+    let command = command_at("margins", &spec.setting);
     let command = command.map(|command| match decay {
         0.0 => command,
         decay => format!("{command} --decay={decay}"),

@@ -52,6 +52,17 @@ def test_points_and_margins_are_those_of_the_program(
     check(slipmap.margins(**at, decay=0.01), program("margins", *flags, "--decay=0.01"))
 
 
+def test_margins_of_systems_are_those_of_the_program(program: Any) -> None:
+    gains = {"k_p": 1.5, "k_d": 1.0, "k_a": 0.2, "damping": 0.0, "stiffness": -1.0}
+    sets = [f"--set={name}={value}" for name, value in gains.items()]
+    at: dict[str, Any] = {**gains, "system": slipmap.System("pd")}
+    found = slipmap.margins(**at, tau=0.2)
+    check(found, program("margins", "--system=pd", *sets, "--tau=0.2"))
+    assert found.gain_margin.lower == pytest.approx(1 / 1.5)
+    with pytest.raises(slipmap.InputError, match="of stability alone"):
+        slipmap.margins(**at, tau=0.2, decay=0.1)
+
+
 @given(gain=GAIN, tau=st.floats(0.1, 6).map(lambda v: round(v, 4)))
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_critical_velocities_are_those_of_the_program(program: Any, gain: float, tau: float) -> None:

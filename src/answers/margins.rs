@@ -3,8 +3,8 @@
 use crate::linear::general::{DelayLine, System};
 use crate::linear::line::Linear;
 use crate::linear::margins::{
-    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, MarginSearch, Radius, Reach,
-    SlidingLaw,
+    self, AsCase, Beyond, Case, Limits, LoopMargins, MOST_VELOCITIES, MarginSearch, Modulus,
+    Radius, Reach, SlidingLaw, SystemLoop,
 };
 use crate::linear::sampled::{SampledLoop, multiple};
 use crate::model::stop::Stop;
@@ -142,8 +142,24 @@ impl SettingMargins {
             case => search.of_loop(case),
             AnyCase::Sampled(of, multiple) => of.loop_margins(*multiple)
         );
+        let unit = self.oscillator.time_unit();
         LoopMargins {
-            latency: found.latency * self.oscillator.time_unit(),
+            latency: found.latency * unit,
+            phase_omega: found.phase_omega / unit,
+            ..found
+        }
+    }
+
+    /// How near the loop comes to −1, on the line Re λ = −σ; not known of digital loops.
+    #[must_use]
+    pub fn modulus(&self) -> Modulus {
+        let found = on_case!(
+            &self.case,
+            case => case.modulus(),
+            AnyCase::Sampled(..) => Modulus::UNKNOWN
+        );
+        Modulus {
+            omega: found.omega / self.oscillator.time_unit(),
             ..found
         }
     }
@@ -268,6 +284,19 @@ impl SettingMargins {
         };
         Some((sliding, *v0))
     }
+}
+
+/// ω of the root on the line Re λ = −σ, σ = `decay`, of a setting that is on the boundary of
+/// stability or of the decay rate; NaN where there is none within rounding.
+#[must_use]
+pub fn crossing_of(setting: &Setting, decay: f64) -> f64 {
+    let crossing = || {
+        let (linear, unit) = setting.linear().ok()?;
+        let tau = setting.get(Parameter::Tau) / unit;
+        let of = SystemLoop::on_line(&linear.system()?, tau, -decay * unit)?;
+        Some(of.crossing()? / unit)
+    };
+    crossing().unwrap_or(f64::NAN)
 }
 
 /// The delay of a digital loop in samples.

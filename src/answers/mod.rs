@@ -14,6 +14,7 @@
 //! - `search_plane`: what is searched for best settings
 //! - `samples`: the samples of a motion, refused or thinned where there are too many
 //! - `sobol`: points of a scrambled Sobol sequence; the only file that imports sobol_burley
+//! - `system_margins`: margins of a system from a file
 //! - `tally`: how many starts had which outcome, and shares of them
 //! - `trace`: a motion sampled over time, with its events
 //! - `trace_error`: why there is no trace of a motion
@@ -33,6 +34,7 @@ pub mod robust_to_fit;
 pub mod samples;
 pub mod search_plane;
 mod sobol;
+pub mod system_margins;
 mod tally;
 pub mod trace;
 mod trace_error;

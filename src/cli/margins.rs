@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::explore::margins::{Margin, Margins, StabilityBox, StableShare};
+use crate::explore::margins::{Margins, StabilityBox, StableShare};
 use crate::explore::point::Point;
 use crate::explore::stability::{Stability, Wanted};
 use crate::model::stop::Stop;
@@ -13,13 +13,16 @@ use crate::setting::units::Units;
 use crate::setting::{Parameter, Setting};
 use crate::text::{Shown, finite};
 
+use super::asked::{Asked, subject};
 use super::failure::Failure;
 use super::inputs_line;
 use super::json::{self, AnswerSchema};
+use super::margin_words::{Crossings, along, between, known, up_to};
 use super::output::tell_dimensionless;
 use super::parameter_values::{amount_of, in_units};
 use super::point_args::PointArgs;
 use super::say::ForPeople;
+use super::system_args::{OTHERS, SystemArgs};
 
 #[derive(Debug, clap::Args)]
 #[command(
@@ -28,6 +31,8 @@ use super::say::ForPeople;
 pub(super) struct Args {
     #[command(flatten)]
     point: PointArgs,
+    #[command(flatten)]
+    system: SystemArgs,
     /// The decay rate that all roots have to have, 1/time; 0 asks for stability
     #[arg(long, value_name = "RATE", default_value = "0", allow_hyphen_values = true,
           value_parser = amount_of(Parameter::AlphaV))]
@@ -46,15 +51,19 @@ pub(super) fn described() -> AnswerSchema {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let asked = args.point.read()?;
+    let asked = args.asked()?;
     let setting = &asked.setting;
     let decay = args.decay(&asked.units)?;
-    let Some(margins) = Margins::at(setting, decay, &Stop::default())? else {
-        let of = setting.law().map_or("a system from a file".into(), |law| {
-            format!("the {} law", law.name())
-        });
+    if setting.system().is_some() && decay > 0.0 {
         return Err(Failure::bad_input_with_help(
-            format!("margins of {of} are not known: a law of the velocity alone is needed"),
+            "--decay: margins of a system from a file are those of stability alone",
+            "leave --decay out; slipmap point --line counts the roots right of a line",
+        ));
+    }
+    let Some(margins) = Margins::at(setting, decay, &Stop::default())? else {
+        let of = setting.law().map_or("friction", LawKind::name);
+        return Err(Failure::bad_input_with_help(
+            format!("margins of the {of} law are not known: a law of the velocity alone is needed"),
             "slipmap point gives its delay margin and, with --json, its latency margin",
         ));
     };
@@ -82,6 +91,23 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// The setting of the block, or of a system from a file.
+    fn asked(&self) -> Result<Asked, Failure> {
+        let of_system = match &self.system.system {
+            Some(_) => {
+                self.point.check_alone("--system", &OTHERS)?;
+                let (sets, units) = (self.point.sets(), self.point.units());
+                self.system
+                    .read(sets, &units, None, |p| self.point.given(p))?
+            }
+            None => self.point.cell_of_system()?,
+        };
+        match of_system {
+            Some(asked) => Ok(asked),
+            None => self.point.read(),
+        }
+    }
+
     /// The required decay rate in `units`.
     fn decay(&self, units: &Units) -> Result<f64, Failure> {
         let decay = in_units("--decay", &self.decay, units)?;
@@ -107,7 +133,7 @@ pub(super) fn violations(stability: &Stability) -> Option<u64> {
 }
 
 /// Why there are no margins: the number of roots on the wrong side, if it is known.
-fn without_margins(margins: &Margins, violations: Option<u64>, rate: &str) -> String {
+fn without_margins((margins, of): (&Margins, &str), violations: Option<u64>, rate: &str) -> String {
     let required = margins.required_decay;
     let decay = Shown(required);
     let why = match violations.map(|n| counted(n, "root")) {
@@ -118,7 +144,7 @@ fn without_margins(margins: &Margins, violations: Option<u64>, rate: &str) -> St
         None if required == 0.0 => "not known to be stable".to_owned(),
         None => format!("not known to be left of -{decay}{rate} with all its roots"),
     };
-    format!("continuous sliding is {why}: no margins")
+    format!("{of} is {why}: no margins")
 }
 
 /// The margins in lines of words and numbers; without margins the number of roots that forbid them.
@@ -130,8 +156,9 @@ pub(super) fn print(
     units: &Units,
 ) -> std::io::Result<()> {
     let rate = unit_behind(&units.rate());
+    let of = subject(setting, "continuous sliding");
     if !margins.decays {
-        writeln!(out, "{}", without_margins(margins, violations, &rate))?;
+        writeln!(out, "{}", without_margins((margins, of), violations, &rate))?;
         return match &margins.fit {
             Some(fit) => writeln!(out, "  {:<16} {}", "fit", of_fit(fit, margins, units)),
             None => Ok(()),
@@ -141,36 +168,12 @@ pub(super) fn print(
         0.0 => "stable".to_owned(),
         decay => format!("left of -{}{rate} with all its roots", Shown(decay)),
     };
-    writeln!(out, "continuous sliding is {wanted}; it stays so")?;
+    writeln!(out, "{of} is {wanted}; it stays so")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let undecided = |name: &str| margins.undecided.contains(&name);
-    let looked = &margins.looked_up_to;
-    if let Some(gain) = margins.gain_margin {
-        let lower = match gain.lower > 0.0 {
-            true => gain.lower,
-            false => f64::NAN,
-        };
-        let text = match (lower, gain.upper) {
-            ends if undecided("gain_margin") => known(ends, " times as large"),
-            (lower, upper) => between(lower, upper, " times as large"),
-        };
-        row("gain_margin", text + &up_to(looked.gain_margin, " times"))?;
-    }
-    for (parameter, margin, last) in [
-        (Parameter::Tau, margins.tau_margin, looked.tau_margin),
-        (Parameter::MuPrime, margins.mu_prime_margin, f64::NAN),
-        (Parameter::V0, margins.v0_margin, looked.v0_margin),
-    ] {
-        let Some(margin) = margin else { continue };
-        let name = format!("{}_margin", parameter.name());
-        let unit = unit_behind(&units.of_parameter(parameter));
-        let text = match undecided(&name) {
-            true => known((margin.from, margin.to), &unit),
-            false => along(&margin, setting.get(parameter), &unit),
-        };
-        row(&name, text + &up_to(last, &unit))?;
-    }
-    print_loop(&mut row, margins, units)?;
+    let unknown = not_known_of(setting);
+    print_gain(&mut row, margins, units, unknown)?;
+    print_along(&mut row, margins, setting, units)?;
+    print_loop(&mut row, margins, units, unknown)?;
     if let Some(found) = &margins.stability_box {
         let of = of_what_is_given(setting);
         let told = match margins.stability_radius.is_nan() {
@@ -182,94 +185,132 @@ pub(super) fn print(
     if let Some(fit) = &margins.fit {
         row("fit", of_fit(fit, margins, units))?;
     }
-    tell_dimensionless(out, units)
-}
-
-/// The end that is known of a margin whose other end is not decided.
-fn known((lower, upper): (f64, f64), unit: &str) -> String {
-    match (finite(lower), finite(upper)) {
-        (Some(lower), None) => format!(
-            "from {}{unit} on; the upper end is not decided",
-            rounded(lower, 9)
-        ),
-        (None, Some(upper)) => format!(
-            "up to {}{unit}; the lower end is not decided",
-            rounded(upper, 9)
-        ),
-        _ => "not decided".into(),
+    match setting.system() {
+        Some(_) => Ok(()),
+        None => tell_dimensionless(out, units),
     }
 }
 
-/// The phase margin and the latency margin.
+/// The gain margin, `unknown` being what it is not known of.
+fn print_gain(
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+    margins: &Margins,
+    units: &Units,
+    unknown: Option<&str>,
+) -> std::io::Result<()> {
+    const NAME: &str = "gain_margin";
+    let Some(gain) = margins.gain_margin else {
+        return unknown.map_or(Ok(()), |of| row(NAME, format!("not known of {of}")));
+    };
+    let lower = match gain.lower > 0.0 {
+        true => gain.lower,
+        false => f64::NAN,
+    };
+    let text = match (lower, gain.upper) {
+        ends if margins.undecided.contains(&NAME) => known(ends, " times as large"),
+        (lower, upper) => between(lower, upper, " times as large"),
+    };
+    let text = text + &Crossings(units).both(margins.crossing_frequencies.gain_margin);
+    row(
+        NAME,
+        text + &up_to(margins.looked_up_to.gain_margin, " times"),
+    )
+}
+
+/// The margins of the delay, and of the slope or the velocity.
+fn print_along(
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+    margins: &Margins,
+    setting: &Setting,
+    units: &Units,
+) -> std::io::Result<()> {
+    if setting.system().is_some() && margins.tau_margin.is_none() {
+        let why = "not known: the system is another one at other delays";
+        row("tau_margin", why.to_owned())?;
+    }
+    let (last, omegas) = (&margins.looked_up_to, &margins.crossing_frequencies);
+    let slope = margins.mu_prime_margin;
+    for (parameter, margin, last, omegas) in [
+        (
+            Parameter::Tau,
+            margins.tau_margin,
+            last.tau_margin,
+            omegas.tau_margin,
+        ),
+        (Parameter::MuPrime, slope, f64::NAN, omegas.mu_prime_margin),
+        (
+            Parameter::V0,
+            margins.v0_margin,
+            last.v0_margin,
+            omegas.v0_margin,
+        ),
+    ] {
+        let Some(margin) = margin else { continue };
+        let name = format!("{}_margin", parameter.name());
+        let unit = unit_behind(&units.of_parameter(parameter));
+        let text = match margins.undecided.contains(&&*name) {
+            true => known((margin.from, margin.to), &unit),
+            false => along(&margin, setting.get(parameter), &unit) + &Crossings(units).both(omegas),
+        };
+        row(&name, text + &up_to(last, &unit))?;
+    }
+    Ok(())
+}
+
+/// What a setting is of which some margins are not known; none of all others.
+fn not_known_of(setting: &Setting) -> Option<&'static str> {
+    match setting.system() {
+        Some(model) => model.without_curves(),
+        None => setting.feedback().is_sampled().then_some("a digital loop"),
+    }
+}
+
+/// The phase margin, the latency margin and the modulus margin, `unknown` being what they are not
+/// known of.
 fn print_loop(
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
     margins: &Margins,
     units: &Units,
+    unknown: Option<&str>,
 ) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
     let last = margins.looked_up_to.latency_margin;
-    for (name, value, unit, endless) in [
+    let (at, omegas) = (Crossings(units), &margins.crossing_frequencies);
+    for (name, value, omega, unit, endless) in [
         (
             "phase_margin",
             margins.phase_margin,
+            omegas.phase_margin,
             " rad",
             "infinite: the loop is nowhere as large as 1",
         ),
         (
             "latency_margin",
             margins.latency_margin,
+            omegas.latency_margin,
             &*time,
             "infinite: no latency matters",
         ),
+        (
+            "modulus_margin",
+            margins.modulus_margin,
+            omegas.modulus_margin,
+            "",
+            "not known",
+        ),
     ] {
-        let text = match finite(value) {
+        let text = match (finite(value), unknown) {
+            (None, Some(of)) if margins.undecided.contains(&name) => format!("not known of {of}"),
             _ if margins.undecided.contains(&name) => "not decided".into(),
-            Some(value) => format!("{}{unit}", rounded(value, 8)),
-            None if name == "latency_margin" && last.is_finite() => {
+            (Some(value), _) => format!("{}{unit}{}", rounded(value, 8), at.one(omega)),
+            (None, _) if name == "latency_margin" && last.is_finite() => {
                 format!("no latency matters{}", up_to(last, unit))
             }
-            None => endless.to_owned(),
+            (None, _) => endless.to_owned(),
         };
         row(name, text)?;
     }
     Ok(())
-}
-
-/// Up to where an end was looked for that was not found.
-fn up_to(last: f64, unit: &str) -> String {
-    finite(last).map_or_else(String::new, |last| {
-        format!("; looked at up to {}{unit}", rounded(last, 8))
-    })
-}
-
-fn between(lower: f64, upper: f64, unit: &str) -> String {
-    let digits = |end| finite(end).map(|end| rounded(end, 8));
-    match (digits(lower), digits(upper)) {
-        (None, None) => "whatever it is".into(),
-        (None, Some(upper)) => format!("up to {upper}{unit}"),
-        (Some(lower), None) => format!("from {lower}{unit} on"),
-        (Some(lower), Some(upper)) => format!("from {lower} to {upper}{unit}"),
-    }
-}
-
-/// The range of a parameter, and how far its ends are.
-fn along(margin: &Margin, at: f64, unit: &str) -> String {
-    let range = between(margin.from, margin.to, unit);
-    let share = |distance: f64| match at {
-        0.0 => String::new(),
-        at => format!(", {:.1} %", 100.0 * (distance / at).abs()),
-    };
-    let away = |sign: &str, distance| {
-        finite(distance).map(|d| format!("{sign}{}{unit}{}", rounded(d, 5), share(d)))
-    };
-    let ways: Vec<String> = [away("-", margin.lower), away("+", margin.upper)]
-        .into_iter()
-        .flatten()
-        .collect();
-    match ways.is_empty() {
-        true => range,
-        false => format!("{range} ({})", ways.join("; ")),
-    }
 }
 
 /// What the errors of a fitted law leave open.

@@ -35,6 +35,7 @@
 //! - `law_args`: the flags of a friction law besides its parameters
 //! - `limit_args`: the flags for a point of the limit of a short delay
 //! - `man`: `slipmap man`
+//! - `margin_words`: margins in words: ranges, and the frequencies of crossings
 //! - `margins`: `slipmap margins`
 //! - `measure`: `slipmap measure`
 //! - `measure_text`: the output of `slipmap measure` for people
@@ -115,6 +116,7 @@ mod kind;
 mod law_args;
 mod limit_args;
 mod man;
+mod margin_words;
 mod margins;
 mod measure;
 mod measure_text;

@@ -5,12 +5,15 @@
 
 use serde::Serialize;
 
+use super::margin_crossings::CrossingFrequencies;
+use super::margin_range::{Margin, Range};
 use super::stability::Stability;
 use crate::answers::drawn_laws::{DRAWS, DrawnLaws};
 use crate::answers::margins::SettingMargins;
+use crate::answers::system_margins::SystemMargins;
 use crate::linear::margins::{Limits, MarginSearch, Radius};
-use crate::model::ModelError;
 use crate::model::stop::Stop;
+use crate::setting::no_answer::NoAnswer;
 use crate::setting::{Parameter, Setting};
 
 /// Margins of a setting, in its units.
@@ -30,14 +33,19 @@ pub struct Margins {
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub phase_margin: f64,
     /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
-    /// the setting without latency does not have the decay rate.
+    /// the setting without latency does not have the decay rate. Of a system of P and Q the largest
+    /// further delay.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub latency_margin: f64,
+    /// The least distance of the loop from −1, which is 1 over the largest sensitivity; 0 where the
+    /// setting does not have the decay rate, null where it is not known.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
+    pub modulus_margin: f64,
     /// The delays between which the setting keeps the decay rate; null where it does not have it.
     #[cfg_attr(feature = "serve", schema(required))]
     pub tau_margin: Option<Margin>,
-    /// The slopes μ_K′ between which it stays, at fixed μ_K; null where it does not have it, and
-    /// where there is a friction law.
+    /// The slopes μ_K′ between which it stays, at fixed μ_K; null where it does not have it, where
+    /// there is a friction law, and of a system from a file.
     #[cfg_attr(feature = "serve", schema(required))]
     pub mu_prime_margin: Option<Margin>,
     /// The sliding velocities between which it stays; null where it does not have it, and where
@@ -45,12 +53,15 @@ pub struct Margins {
     #[cfg_attr(feature = "serve", schema(required))]
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it, for the
-    /// friction that was given; 0 where it does not have it, null where that is not known.
+    /// friction that was given; 0 where it does not have it, null where that is not known, and of a
+    /// system from a file.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub stability_radius: f64,
     /// That box; null where the setting does not have the decay rate.
     #[cfg_attr(feature = "serve", schema(required))]
     pub stability_box: Option<StabilityBox>,
+    /// The frequencies of the crossings that the margins come from.
+    pub crossing_frequencies: CrossingFrequencies,
     /// The margins above that are undecided or not available for this system; their null values
     /// mean this.
     pub undecided: Vec<&'static str>,
@@ -128,36 +139,6 @@ impl LookedUpTo {
     };
 }
 
-/// Both ends of a range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct Range {
-    /// The lower end; null where there is none.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub lower: f64,
-    /// The upper end; null where there is none.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub upper: f64,
-}
-
-/// How far a parameter may go down and up.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct Margin {
-    /// The distance downwards; null where no smaller value matters.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub lower: f64,
-    /// The distance upwards; null where no larger value matters.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub upper: f64,
-    /// The value below at which stability, or the decay rate, is lost; null where at none.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub from: f64,
-    /// The value above; null where at none.
-    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
-    pub to: f64,
-}
-
 /// A box of relative changes, all of them at most the stability radius.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
@@ -177,12 +158,16 @@ pub struct StabilityBox {
 
 impl Margins {
     /// The margins of a setting with all its parameters, for a required decay rate of `decay` ≥ 0;
-    /// none of a system from a file and of friction with a state. Once `stop` is set, the answer
-    /// comes soon but is meaningless.
+    /// none of friction with a state, nor of a system from a file where a rate is required. Once
+    /// `stop` is set, the answer comes soon but is meaningless.
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Option<Self>, ModelError> {
+    /// When a parameter is outside the model's range, or nothing is known of such a model.
+    pub fn at(setting: &Setting, decay: f64, stop: &Stop) -> Result<Option<Self>, NoAnswer> {
+        if let Some(of) = SystemMargins::of(setting, stop)? {
+            let tau = setting.get(Parameter::Tau);
+            return Ok((decay == 0.0).then(|| Self::of_system(&of, tau)));
+        }
         let Some(around) = SettingMargins::of(setting, decay)? else {
             return Ok(None);
         };
@@ -226,15 +211,70 @@ impl Margins {
             margins.undecided.push("tau_margin");
         }
         margins.phase_margin = f64::NAN;
+        margins.modulus_margin = f64::NAN;
         margins.stability_radius = f64::NAN;
         margins.undecided.extend([
             "gain_margin",
             "phase_margin",
+            "modulus_margin",
             "mu_prime_margin",
             "v0_margin",
             "stability_radius",
         ]);
         margins
+    }
+
+    /// Of a system from a file, at the delay `tau`.
+    fn of_system(of: &SystemMargins, tau: f64) -> Self {
+        let mut margins = Self {
+            decays: of.stable(),
+            ..Self::lost(0.0)
+        };
+        let (latency, latency_omega) = of.latency();
+        if !margins.decays {
+            // Of B and A that counts from no latency at all, whatever holds at its own.
+            if of.is_loop() {
+                margins.note("latency_margin", &[latency]);
+                margins.latency_margin = latency;
+                margins.crossing_frequencies.latency_margin = latency_omega;
+            }
+            return margins;
+        }
+        let gain = of.gain(&mut MarginSearch::default());
+        let (phase, modulus) = (of.phase(), of.modulus());
+        let (delay, delay_omegas) = of.delay();
+        let limits = [gain.limits.lower, gain.limits.upper];
+        margins.note("gain_margin", &limits);
+        margins.note("phase_margin", &[phase.angle]);
+        margins.note("latency_margin", &[latency]);
+        margins.note("modulus_margin", &[modulus.margin]);
+        margins.note("tau_margin", &[delay.lower, delay.upper]);
+        margins.undecided.push("stability_radius");
+        let last = match gain.limits.upper == f64::INFINITY && of.is_loop() {
+            true => of.most_gains(),
+            false => f64::NAN,
+        };
+        Self {
+            gain_margin: of.is_loop().then_some(Range::of(limits)),
+            phase_margin: phase.angle,
+            latency_margin: latency,
+            modulus_margin: modulus.margin,
+            tau_margin: (!delay.upper.is_nan()).then(|| Margin::of(tau, delay, 0.0)),
+            stability_radius: f64::NAN,
+            crossing_frequencies: CrossingFrequencies {
+                gain_margin: Range::of(gain.omegas),
+                phase_margin: phase.omega,
+                latency_margin: latency_omega,
+                modulus_margin: modulus.omega,
+                tau_margin: Range::of(delay_omegas),
+                ..CrossingFrequencies::NONE
+            },
+            looked_up_to: LookedUpTo {
+                gain_margin: last,
+                ..LookedUpTo::NONE
+            },
+            ..margins
+        }
     }
 
     /// The margins of a setting without the decay rate: 0 or null.
@@ -245,11 +285,13 @@ impl Margins {
             gain_margin: None,
             phase_margin: 0.0,
             latency_margin: 0.0,
+            modulus_margin: 0.0,
             tau_margin: None,
             mu_prime_margin: None,
             v0_margin: None,
             stability_radius: 0.0,
             stability_box: None,
+            crossing_frequencies: CrossingFrequencies::NONE,
             undecided: Vec::new(),
             looked_up_to: LookedUpTo::NONE,
             fit: None,
@@ -269,6 +311,9 @@ impl Margins {
         self.note("latency_margin", &[of_loop.latency]);
         self.phase_margin = of_loop.phase;
         self.latency_margin = of_loop.latency;
+        let modulus = around.modulus();
+        self.note("modulus_margin", &[modulus.margin]);
+        self.modulus_margin = modulus.margin;
         let delay = around.delay();
         self.note("tau_margin", &[delay.lower, delay.upper]);
         self.tau_margin = Some(Margin::of(setting.get(Parameter::Tau), delay, 0.0));
@@ -298,28 +343,16 @@ impl Margins {
         self.note("stability_radius", &[radius.proved]);
         self.stability_radius = radius.proved;
         self.stability_box = Some(StabilityBox::of(&radius, third));
+        self.crossing_frequencies = CrossingFrequencies {
+            phase_margin: of_loop.phase_omega,
+            modulus_margin: modulus.omega,
+            ..CrossingFrequencies::of_block(self, setting)
+        };
     }
 
     fn note(&mut self, name: &'static str, values: &[f64]) {
         if values.iter().any(|value| value.is_nan()) {
             self.undecided.push(name);
-        }
-    }
-}
-
-impl Margin {
-    /// A margin from limits. A lower limit at `least`, the lower end of the parameter's range,
-    /// loses nothing.
-    fn of(at: f64, limits: Limits, least: f64) -> Self {
-        let from = match limits.lower <= least {
-            true => f64::NEG_INFINITY,
-            false => limits.lower,
-        };
-        Self {
-            lower: at - from,
-            upper: limits.upper - at,
-            from,
-            to: limits.upper,
         }
     }
 }

@@ -7,7 +7,8 @@
 //!   roots: [`stability`] of its linear model; [`stable_line`]: its stable delays and latencies;
 //!   [`along_delay`]: over its delays
 //! - [`margin_kind`]: whether a distance to a change of stability is finite, infinite or unknown
-//! - [`margins`]: how far a point is from the boundary of stability
+//! - [`margins`]: how far a point is from the boundary of stability; [`margin_range`]: the ends
+//!   of margins; [`margin_crossings`]: the frequencies that they come from
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
 //! - [`comparison`]: control by the return map beside delayed feedback; [`route`]: how low v0 may
@@ -42,7 +43,9 @@ pub mod encoded;
 pub mod given_setting;
 pub mod known;
 pub mod law;
+pub mod margin_crossings;
 pub mod margin_kind;
+pub mod margin_range;
 pub mod margins;
 pub mod measure;
 pub mod motion;

@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::margin_kind::MarginKind;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
-use crate::model::ModelError;
 use crate::model::elementary::exp;
 use crate::model::stop::Stop;
 use crate::setting::no_answer::NoAnswer;
@@ -113,7 +112,7 @@ impl Point {
 }
 
 impl BlockPoint {
-    fn of(setting: &Setting, stability: Stability, stop: &Stop) -> Result<Self, ModelError> {
+    fn of(setting: &Setting, stability: Stability, stop: &Stop) -> Result<Self, NoAnswer> {
         let sliding = setting.sliding_point()?;
         let margins = Margins::at(setting, 0.0, stop)?;
         let tau = setting.get(Parameter::Tau);

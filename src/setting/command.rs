@@ -60,8 +60,15 @@ pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
 /// whose files are not known.
 #[must_use]
 pub fn point_command(setting: &Setting) -> Option<String> {
+    command_at("point", setting)
+}
+
+/// The command line that asks `command`, which is `point` or `margins`, about a point; none for
+/// measured friction and for a system that is not part of the program.
+#[must_use]
+pub fn command_at(command: &str, setting: &Setting) -> Option<String> {
     let Some(model) = setting.system() else {
-        return command_line("point", setting, |parameter| of_point(setting, parameter));
+        return command_line(command, setting, |parameter| of_point(setting, parameter));
     };
     let known = |name: &str| shipped::system(name).is_some_and(|known| known == *model);
     let mut names = shipped::SHIPPED.into_iter().map(|(name, _)| name);
@@ -75,7 +82,7 @@ pub fn point_command(setting: &Setting) -> Option<String> {
     let others: String = others
         .map(|p| format!(" --{}={}", p.name(), setting.get(*p)))
         .collect();
-    Some(format!("slipmap point --system={name}{sets}{others}"))
+    Some(format!("slipmap {command} --system={name}{sets}{others}"))
 }
 
 #[cfg(test)]

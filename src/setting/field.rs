@@ -499,10 +499,23 @@ catalogue! {
                         stays stable",
             short_name: "latency margin",
             measure: TIME,
-            comment: Some("infinity where no latency matters; 0 where unstable without latency"),
+            comment: Some(
+                "infinity where no latency matters; 0 where unstable without latency; of a system \
+                 of P and Q the largest further delay",
+            ),
             spread: Spread::LongTail,
             stable: Some(|value| value > 0.0),
             ..margin(OfMargins::Latency)
+        };
+        /// The least distance of the loop from −1.
+        ModulusMargin = Row {
+            name: "modulus_margin",
+            long_name: "least distance of the loop of the feedback from -1, which is 1 over the \
+                        largest sensitivity",
+            short_name: "modulus margin",
+            comment: Some("0 where unstable"),
+            stable: Some(|value| value > 0.0),
+            ..margin(OfMargins::Modulus)
         };
         /// The largest relative box of gain, delay and μ_K′ (or v0) in which sliding is stable.
         StabilityRadius = Row {

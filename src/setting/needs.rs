@@ -319,15 +319,15 @@ fn not_of_system(field: Field, model: &SystemModel) -> Option<Unmet> {
         }
         Source::Linear(OfLinear::StiffnessRatio) => ("it is of the rate-and-state law", OTHERS),
         Source::Roots(OfRoots::SpectralRadius) => ("it is of a digital loop", OTHERS),
-        Source::Margins(OfMargins::Latency) if !model.is_feedback() => (
-            "the system has no latency",
-            "a system of B and A has one, one of P and Q has not",
-        ),
-        Source::Line
-        | Source::Roots(_)
-        | Source::Linear(_)
-        | Source::Margins(OfMargins::Latency) => return None,
-        Source::Margins(_) => ("it needs the block on its spring", OTHERS),
+        Source::Margins(OfMargins::StabilityRadius) => ("it needs the block on its spring", OTHERS),
+        Source::Margins(OfMargins::Phase | OfMargins::Latency) => return None,
+        Source::Margins(_) if let Some(of) = model.without_curves() => {
+            return Some(ReportedAt::Field.refuse(
+                format!("{} is not known of {of}", field.name()),
+                "phase_margin, latency_margin and delay_margin are",
+            ));
+        }
+        Source::Line | Source::Roots(_) | Source::Linear(_) | Source::Margins(_) => return None,
         _ => (
             "it needs the block on its spring; a system from a file has no motions",
             OTHERS,

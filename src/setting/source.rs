@@ -108,6 +108,8 @@ pub enum OfMargins {
     Phase,
     /// The largest latency of the feedback, counted from none, at which sliding stays stable.
     Latency,
+    /// The least distance of the loop from −1.
+    Modulus,
     /// The largest relative box of parameters.
     StabilityRadius,
 }

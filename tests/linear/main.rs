@@ -48,6 +48,7 @@ mod general_latency_random;
 mod general_random;
 mod general_row;
 mod letter;
+mod loop_margins;
 #[cfg(feature = "cli")]
 mod margin_maps;
 mod margins;

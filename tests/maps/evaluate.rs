@@ -171,7 +171,7 @@ fn fields_are_refused_where_sweep_files_refuse_them() {
     check_refusal(Field::NUnstable, &law, 1.0, "v0 is not given");
     let system = plan(SWEEPS[6]).setting(&[0, 0]);
     check_refusal(
-        Field::PhaseMargin,
+        Field::StabilityRadius,
         &system,
         1.0,
         "it needs the block on its spring",

@@ -47,6 +47,7 @@ mod return_map;
 mod rig;
 mod shards;
 mod speeds;
+mod system_margins;
 mod systems;
 mod systems_of_others;
 mod traces;

@@ -119,6 +119,13 @@ impl DelayLine {
         self.find_crossings(system);
     }
 
+    /// Whether all crossings are known. What is always marginal for no reason is a line with too
+    /// many crossings to list, or without a count to begin with.
+    #[must_use]
+    pub(in crate::linear) fn crossings_known(&self) -> bool {
+        !self.uncounted && (!self.always_marginal || self.reason.is_some())
+    }
+
     pub(super) fn clear(&mut self) {
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();

@@ -4,6 +4,7 @@
 //! - `zeros`: all zeros of such a polynomial, in discs that are known to hold them
 //! - `factored`: the zeros of F from the values of P and Q, where its coefficients cancel
 //! - `composition`: what D is composed of, and all that depends on which it is
+//! - `loop_sides`: a system as a loop, U + k V
 //! - `system`: one setting, its class, and |P|² − |Q|² and D on a vertical line
 //! - `unit`: the unit of time in which a system is of the order of 1, and lines in other units
 //! - `switches`: where |P| and |Q| change places on such a line
@@ -45,6 +46,7 @@ mod isolate;
 mod latency;
 mod level;
 pub mod line;
+mod loop_sides;
 mod parts;
 pub(crate) mod plane;
 pub(crate) mod polynomial;
@@ -69,6 +71,7 @@ pub(crate) mod zeros;
 pub use at_origin::OriginError;
 pub use latency::Form;
 pub use line::DelayLine;
+pub(super) use loop_sides::{LoopSide, beyond_positive, without_idle_zeros};
 pub use plane::{SystemPlane, SystemSetting};
 pub use polynomial::{MOST_DEGREE, Polynomial};
 pub use precise::source::Source;

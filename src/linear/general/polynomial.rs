@@ -314,7 +314,7 @@ impl Polynomial {
     /// ≤ `size`.
     #[inline]
     #[must_use]
-    pub(super) fn bounds(&self, size: f64) -> (f64, f64) {
+    pub(in crate::linear) fn bounds(&self, size: f64) -> (f64, f64) {
         let (mut value, mut error) = (0.0, 0.0);
         for (c, e) in self.coefficients().iter().zip(self.errors()).rev() {
             value = value * size + c.abs();

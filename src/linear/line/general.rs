@@ -77,10 +77,8 @@ impl Line for DelayLine {
         Box::new(self.crossings.iter())
     }
 
-    /// What is always marginal for no reason is a line with too many crossings to list, or without
-    /// a count to begin with.
     fn crossings_known(&self) -> bool {
-        !self.uncounted && (!self.always_marginal || self.reason.is_some())
+        DelayLine::crossings_known(self)
     }
 
     fn changes(&self) -> Box<dyn Iterator<Item = Change> + '_> {

@@ -22,6 +22,8 @@ impl Limits {
 pub struct LoopMargins {
     /// The phase margin in radians; infinite where |L| is 1 nowhere.
     pub phase: f64,
+    /// ω at which it is, in units of √(κ/M); NaN where that is not known.
+    pub phase_omega: f64,
     /// The latency margin in units of √(M/κ); infinite where no latency matters.
     pub latency: f64,
 }

@@ -30,15 +30,20 @@
 //!   variables
 //! - `enclosure`: D over boxes of frequency and parameters
 //! - `equations`: where a root is on the line, as equations in ω
+//! - `form`: quadratic forms of the two sides of a loop, as functions of ω
+//! - `gain`: the gain margin of any loop
 //! - `limits`: what margins are told as
+//! - `modulus`: how near the loop comes to −1
 //! - `nearest`: the nearest value of one parameter at which a root is on the line, by boxes
 //! - `nearest_change`: the nearest value of one parameter at which stability is lost, as the count
 //!   has it
 //! - `not_stable`: settings around one that are not stable
+//! - `of_system`: any system with one delay as a loop
 //! - `radius`: the stability radius, proved
 //! - `setting`: a setting, the letter's own or one beyond it
 //! - `sum`: functions of ω that swing with several delays, as the left sides of these equations do
 //! - `surroundings`: the settings around a setting: what D depends on, which are stable
+//! - `turns`: the phase margin from the crossings of a line
 
 mod affine;
 mod along;
@@ -46,17 +51,23 @@ mod beyond;
 mod crossing_delays;
 mod enclosure;
 mod equations;
+mod form;
+mod gain;
 mod limits;
+mod modulus;
 mod nearest;
 mod nearest_change;
 mod not_stable;
+mod of_system;
 mod radius;
 mod setting;
 mod sum;
 mod surroundings;
+mod turns;
 
 use std::f64::consts::TAU;
 
+use self::gain::{Factors, MOST_GAINS};
 use self::nearest_change::{Search, Side};
 use self::surroundings::{Surroundings, Third};
 use crate::linear::real_zeros::{TooMany, zeros};
@@ -66,10 +77,15 @@ pub use self::along::{MOST_VELOCITIES, delay, velocity};
 pub use self::beyond::{Beyond, Equations};
 pub use self::enclosure::SlidingLaw;
 pub use self::equations::OnLine;
+pub use self::gain::{GainLoop, GainMargin};
 pub use self::limits::{Limits, LoopMargins};
+pub use self::modulus::Modulus;
+pub use self::of_system::SystemLoop;
 pub use self::radius::Radius;
 pub use self::setting::{AsCase, Case, Setting};
 pub use self::surroundings::Changes;
+pub use self::turns::PhaseMargin;
+pub(crate) use self::turns::omega_at;
 
 /// Searches for margins, with the room that they share.
 ///
@@ -77,10 +93,8 @@ pub use self::surroundings::Changes;
 #[derive(Debug, Default)]
 pub struct MarginSearch {
     changes: Vec<f64>,
+    factors: Factors,
 }
-
-/// How many times as large gains are looked at, where no bound on them is known.
-const MOST_GAINS: f64 = 1e12;
 
 /// How far limits are looked for before they are told as infinite; infinite where none lies beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,60 +133,12 @@ impl MarginSearch {
     /// The gain margin: the factors of both gains at which stability is lost. 0 below where any
     /// smaller gain is stable too.
     pub fn gain(&mut self, of: &impl AsCase) -> Limits {
-        let case = of.case();
-        if case.setting.idle() {
-            return Limits {
-                lower: 0.0,
-                upper: f64::INFINITY,
-            };
-        }
-        let line = &case.on_line;
-        let highest = line.highest_with_gain();
-        let f = line.gain();
-        // The greatest factor whose crossings are all among those found.
-        let mut most = if highest.is_finite() {
-            f64::INFINITY
-        } else {
-            2.0
-        };
-        let mut lower = None;
-        loop {
-            let end = line.gain_bound(most).min(highest);
-            self.changes.clear();
-            let changes = &mut self.changes;
-            let mut keep = |omega, _| {
-                let factor = line.gain_factor(omega);
-                if factor > 0.0 && factor <= most {
-                    changes.push(factor);
-                }
-            };
-            if case.stopped() || zeros(&f, end, &mut keep).is_err() {
-                return Limits {
-                    lower: lower.unwrap_or(f64::NAN),
-                    upper: f64::NAN,
-                };
-            }
-            // A real root on the line; on the imaginary axis there is none.
-            if case.setting.decay > 0.0 {
-                keep(0.0, true);
-            }
-            let search = Search {
-                changes: &self.changes,
-                from: 1.0,
-                stable: |factor: f64| case.stability_with_gains(factor),
-                sure: case.setting.decay == 0.0,
-            };
-            let below = || search.nearest(Side::Below, 0.0).unwrap_or(0.0);
-            let lower = *lower.get_or_insert_with(below);
-            let above = search.nearest(Side::Above, most);
-            // No crossing has a frequency beyond `highest`.
-            let last = end >= highest || most >= MOST_GAINS;
-            if above.is_some() || last {
-                let upper = above.unwrap_or(f64::INFINITY);
-                return Limits { lower, upper };
-            }
-            most *= 4.0;
-        }
+        self.gain_margin(&of.case()).limits
+    }
+
+    /// The gain margin of any loop, with the frequencies it comes from.
+    pub fn gain_margin(&mut self, of: &impl GainLoop) -> GainMargin {
+        self.factors.gain_margin(of)
     }
 
     /// The slopes b at which stability is lost, μ_K fixed; −∞ below where it never is.
@@ -214,6 +180,7 @@ impl MarginSearch {
         let from_none = case.on_line.beyond().map(|of| along::latency(&case, &of));
         let mut margins = LoopMargins {
             phase: f64::INFINITY,
+            phase_omega: f64::NAN,
             latency: from_none.unwrap_or(f64::INFINITY),
         };
         if setting.idle() {
@@ -221,7 +188,9 @@ impl MarginSearch {
         }
         let mut latency = f64::INFINITY;
         let searched = Self::unit_loop(&case.on_line, |omega, angle| {
-            margins.phase = margins.phase.min(angle.abs());
+            if angle.abs() < margins.phase {
+                (margins.phase, margins.phase_omega) = (angle.abs(), omega);
+            }
             let ahead = if angle > 0.0 { angle } else { angle + TAU };
             latency = latency.min(ahead / omega);
         });

@@ -2,6 +2,9 @@
 
 use super::beyond::{Beyond, Equations};
 use super::equations::OnLine;
+use super::gain::GainLoop;
+use super::modulus::Modulus;
+use super::of_system::SystemLoop;
 use crate::model::elementary::ln;
 use crate::model::stop::Stop;
 use crate::model::{Channel, Groups};
@@ -89,6 +92,14 @@ impl<L: OnLine> Case<L> {
         self.stop = stop.clone();
     }
 
+    /// How near the loop comes to −1 on the line Re λ = −σ.
+    pub(crate) fn modulus(&self) -> Modulus {
+        let Setting { groups, tau, decay } = self.setting;
+        let beyond = self.on_line.beyond().unwrap_or_default();
+        let of = SystemLoop::on_line(&beyond.of_groups(groups).system(), tau, -decay);
+        of.map_or(Modulus::UNKNOWN, |of| of.heeding(&self.stop).modulus())
+    }
+
     /// Whether nobody waits for the margins any more.
     pub(super) fn stopped(&self) -> bool {
         self.stop.is_set()
@@ -136,5 +147,46 @@ impl<L: OnLine> Case<L> {
     pub(super) fn stability_with_slope(&self, b: f64) -> Option<bool> {
         let Setting { groups, tau, .. } = self.setting;
         self.stability_at(Groups { b, ..groups }, tau)
+    }
+}
+
+impl<L: OnLine> GainLoop for Case<L> {
+    type Function = L::Function;
+
+    fn idle(&self) -> bool {
+        self.setting.idle()
+    }
+
+    fn stopped(&self) -> bool {
+        Self::stopped(self)
+    }
+
+    fn left_side(&self) -> L::Function {
+        self.on_line.gain()
+    }
+
+    fn factor(&self, omega: f64) -> f64 {
+        self.on_line.gain_factor(omega)
+    }
+
+    fn bound(&self, factor: f64) -> f64 {
+        self.on_line.gain_bound(factor)
+    }
+
+    fn highest(&self) -> f64 {
+        self.on_line.highest_with_gain()
+    }
+
+    /// On the imaginary axis there is none: without motion nothing is fed back.
+    fn looks_at_zero(&self) -> bool {
+        self.setting.decay > 0.0
+    }
+
+    fn stable_with(&self, factor: f64) -> Option<bool> {
+        self.stability_with_gains(factor)
+    }
+
+    fn sure(&self) -> bool {
+        self.setting.decay == 0.0
     }
 }

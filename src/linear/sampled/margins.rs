@@ -153,6 +153,7 @@ impl SampledLoop {
         };
         LoopMargins {
             phase,
+            phase_omega: f64::NAN,
             latency: latency.map_or(f64::INFINITY, |samples| samples as f64 * self.sample_time),
         }
     }

@@ -126,8 +126,10 @@ impl GeneralColumns {
             if line.stop.is_set() {
                 return;
             }
-            let margin = line.system.latency_margin(tau / line.time_unit);
-            let margin = margin.unwrap_or(f64::NAN);
+            // P and Q have none of their own: theirs is told with the other margins.
+            let Some(margin) = line.system.latency_margin(tau / line.time_unit) else {
+                return;
+            };
             if margin.is_nan() {
                 *status |= NOT_CONVERGED;
             }

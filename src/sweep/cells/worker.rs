@@ -117,6 +117,7 @@ impl<'p> Worker<'p> {
             if let Some(mut one) = self.by_delay.take() {
                 self.fill_by_delay(&mut one, at, stop);
                 self.by_delay = Some(one);
+                self.fill_slowly(&tile.offset, inside, at, None, stop);
                 cut_short |= stop.is_set();
                 return;
             }

@@ -29,6 +29,7 @@ use super::switches::Switches;
 use super::system::{Class, System};
 pub(super) use budget::{Budget, MOST_STEPS_OF_A_CELL};
 use on_line::OnLine;
+pub(super) use window::beyond_zeros;
 
 pub use on_line::Form;
 

@@ -30,7 +30,7 @@ use super::super::sum::{Part, Sum, Terms, conjugate, exactly, growth, on_line, o
 use super::feedback::Beyond;
 use crate::linear::characteristic::{late, one_minus_exp};
 use crate::linear::feedback_loop::{LagPolynomials, polynomial, times};
-use crate::linear::general::{DelayLine, Polynomial, System};
+use crate::linear::general::{DelayLine, Polynomial, System, beyond_positive};
 use crate::linear::rounded::Rounded;
 use crate::linear::stable_delays::StableInterval;
 use crate::model::Groups;
@@ -250,18 +250,10 @@ impl OnLine for Equations {
             return f64::INFINITY;
         }
         let product = self.loop_product();
-        let negative = Polynomial::of(product.degree() / 2, |k| {
+        beyond_positive(&Polynomial::of(product.degree() / 2, |k| {
             let c = product.coefficient(2 * k);
-            c.scaled(if k % 2 == 0 { -1.0 } else { 1.0 })
-        });
-        if negative.is_zero() {
-            return 0.0;
-        }
-        let leading = negative.coefficient(negative.degree());
-        match leading.decided() && leading.value > 0.0 {
-            true => negative.beyond_zeros().sqrt() * (1.0 + 1e-12),
-            false => f64::INFINITY,
-        }
+            c.scaled(if k % 2 == 0 { 1.0 } else { -1.0 })
+        }))
     }
 
     /// The left side of (3).
