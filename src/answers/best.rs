@@ -328,6 +328,12 @@ impl Scales {
         let mut in_the_middle = setting.clone();
         set(&mut in_the_middle, middle(p), middle(q));
         in_the_middle.searched()?;
+        // Where a gain in the middle is 0 any matrices are P and Q.
+        let mut at_the_end = setting.clone();
+        set(&mut at_the_end, p.1, q.1);
+        if let Some(of) = at_the_end.without_curves() {
+            return Err(NoAnswer::Unsearched(of));
+        }
         Ok(of(&Search { family, p, q }))
     }
 

@@ -34,6 +34,7 @@ impl SystemMargins {
             return Ok(None);
         }
         let (linear, _) = setting.answered()?;
+        let linear = linear.settled();
         let tau = setting.get(Parameter::Tau);
         let line = linear.roots(stop).line(1.0);
         let count = line.count(tau, MarginalTolerance::default());

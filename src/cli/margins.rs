@@ -260,7 +260,7 @@ fn print_along(
 /// What a setting is of which some margins are not known; none of all others.
 fn not_known_of(setting: &Setting) -> Option<&'static str> {
     match setting.system() {
-        Some(model) => model.without_curves(),
+        Some(_) => setting.without_curves(),
         None => setting.feedback().is_sampled().then_some("a digital loop"),
     }
 }

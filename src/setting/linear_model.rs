@@ -143,10 +143,20 @@ impl Setting {
     /// # Errors
     /// As [`Setting::answered`], and for systems of which no best settings are known.
     pub(crate) fn searched(&self) -> Result<(Linear, f64), NoAnswer> {
-        match self.system().and_then(SystemModel::without_curves) {
+        match self.without_curves() {
             Some(of) => Err(NoAnswer::Unsearched(of)),
             None => self.answered(),
         }
+    }
+
+    /// What the system is where it has neither crossing curves nor best settings; none where it
+    /// has them.
+    #[must_use]
+    pub(crate) fn without_curves(&self) -> Option<&'static str> {
+        let of = self.system().and_then(SystemModel::without_curves)?;
+        let of_matrices = matches!(self.linear(), Ok((of @ Linear::Matrix(_), _))
+            if of.system().is_some());
+        (!of_matrices).then_some(of)
     }
 
     /// The linear model and the unit of time; the expressions of a system from a file are evaluated

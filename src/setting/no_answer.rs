@@ -1,5 +1,7 @@
 //! Why a setting has no linear model, or no answer.
 
+use std::borrow::Cow;
+
 use crate::model::ModelError;
 
 /// Why a setting has no linear model, or no answer.
@@ -11,8 +13,8 @@ pub enum NoAnswer {
     /// An expression has no value.
     #[error("{polynomial}: {what}")]
     Undefined {
-        /// The name of the polynomial.
-        polynomial: &'static str,
+        /// The name of the polynomial, or of the entry of a matrix.
+        polynomial: Cow<'static, str>,
         /// What is wrong.
         what: String,
     },
@@ -38,7 +40,10 @@ impl From<NoAnswer> for ModelError {
         match why {
             NoAnswer::Model(error) => error,
             NoAnswer::Undefined { polynomial, .. } => of(
-                polynomial,
+                match polynomial {
+                    Cow::Borrowed(name) => name,
+                    Cow::Owned(_) => "entry",
+                },
                 "an expression that has a finite value, A of a smaller degree than B",
             ),
             NoAnswer::Refused | NoAnswer::Unsearched(_) | NoAnswer::Zero => {

@@ -166,6 +166,13 @@ impl SweepSpec {
         most(&self.fixed, &self.axes).feedback().is_sampled()
     }
 
+    /// What the system of the sweep is where it has neither crossing curves nor best settings;
+    /// none where it has them.
+    #[must_use]
+    pub(crate) fn without_curves(&self) -> Option<&'static str> {
+        most(&self.fixed, &self.axes).without_curves()
+    }
+
     /// Whether each cell has a sliding state whose linear stability can be computed. A friction law
     /// needs a v0 for that.
     #[must_use]

@@ -325,6 +325,143 @@ fn polynomials_and_their_companion_agree() {
     }
 }
 
+/// P and Q with random coefficients, and matrices of the same system that are no companion: every
+/// number has few binary digits, so that both are exact.
+fn given_both_ways(chance: &mut Chance) -> [Vec<f64>; 4] {
+    let n = 1 + chance.of(7);
+    let number = |chance: &mut Chance| (32.0 * chance.normal()).round() / 32.0;
+    // Zeros left of the axis, or not far from it, one or two at a time.
+    let mut p = vec![1.0];
+    while p.len() <= n {
+        let late = number(chance).abs() + 0.5;
+        let factor = if p.len() == n {
+            vec![late, 1.0]
+        } else {
+            vec![late, (4.0 * chance.between(-0.1, 1.0)).round() / 4.0, 1.0]
+        };
+        let mut product = vec![0.0; p.len() + factor.len() - 1];
+        for (i, a) in p.iter().enumerate() {
+            for (j, b) in factor.iter().enumerate() {
+                product[i + j] += a * b;
+            }
+        }
+        p = product;
+    }
+    let n = p.len() - 1;
+    let q: Vec<f64> = (0..n).map(|_| number(chance)).collect();
+    // The observer form, then sums of rows with the opposite sums of columns.
+    let mut a = vec![0.0; n * n];
+    let (mut b, mut c) = (vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        a[i * n + n - 1] = -p[i];
+        b[i] = -q[i];
+        if i > 0 {
+            a[i * n + i - 1] += 1.0;
+        }
+    }
+    c[n - 1] = 1.0;
+    for _ in 0..if n > 1 { 4 } else { 0 } {
+        let from = chance.of(n);
+        let to = (from + 1 + chance.of(n - 1)) % n;
+        let by = [-1.0, 0.5, 1.0, -0.5][chance.of(4)];
+        for j in 0..n {
+            a[to * n + j] += by * a[from * n + j];
+        }
+        b[to] += by * b[from];
+        for row in a.chunks_mut(n) {
+            row[from] -= by * row[to];
+        }
+        c[from] -= by * c[to];
+    }
+    [p, q, a, [b, c].concat()]
+}
+
+#[test]
+fn one_delayed_signal_is_as_its_polynomials() {
+    let asked = asked("SLIPMAP_MATRICES", 60);
+    let stop = Stop::default();
+    let mut crossings = 0;
+    for seed in 0..asked {
+        let mut chance = Chance(seed + (1 << 45));
+        let [p, q, a, fed] = given_both_ways(&mut chance);
+        let n = p.len() - 1;
+        let (b, c) = fed.split_at(n);
+        let system = MatrixSystem::of_feedback(
+            &Matrix::new(n, n, a),
+            &Matrix::new(n, 1, b.to_vec()),
+            None,
+            &Matrix::new(1, n, c.to_vec()),
+        );
+        let system = system.unwrap();
+        let [one, other] = [
+            Linear::General(Box::new(System::of_coefficients(&p, &q).unwrap())),
+            Linear::Matrix(Box::new(system.clone())),
+        ];
+        let [one, other] = [one, other].map(|of| of.roots(&stop));
+        let (line, same) = (one.line(1.0), other.line(1.0));
+        let [of_line, of_same] = [&line, &same].map(|of| of.crossings().collect::<Vec<_>>());
+        assert_eq!(of_line.len(), of_same.len(), "{seed}");
+        for (x, y) in of_line.iter().zip(&of_same) {
+            assert!((x.omega - y.omega).abs() <= 1e-12 * x.omega, "{seed}");
+            assert!((x.theta - y.theta).abs() <= 1e-12, "{seed} {x:?} {y:?}");
+            crossings += 1;
+        }
+        let by_matrices = MatrixRoots::new(system);
+        for tau in [0.0, 0.3, 2.0, 9.0] {
+            let [x, y, z] = [&*one, &*other, &by_matrices].map(|of| of.count(tau, 1.0).unwrap());
+            assert_eq!(x.n_unstable, y.n_unstable, "{seed} {tau}");
+            let decided = !(y.marginal || z.marginal);
+            assert!(
+                !decided || z.n_unstable == y.n_unstable,
+                "{seed} {tau} {z:?}"
+            );
+        }
+        let [x, y] = [&one, &other].map(|of| of.spectrum(1.0, 1).abscissa);
+        assert!((x - y).abs() <= 1e-10 * (1.0 + x.abs()), "{seed} {x} {y}");
+    }
+    println!("{asked} systems, {crossings} crossings");
+    assert!(crossings > asked, "{crossings}");
+}
+
+/// Chains with damping to 1e-9, every tenth of degree 18 to 32, against their own recursion.
+#[test]
+fn chains_given_as_matrices_are_right_or_undecided() {
+    let asked = asked("SLIPMAP_MATRICES", 60);
+    let (mut compared, mut undecided) = (0, 0);
+    for seed in 0..asked {
+        let mut chance = Chance(seed + (1 << 46));
+        let damper = chance.log(1e-9, 1e-2);
+        let long = seed % 10 == 9;
+        let chain = Chain {
+            masses: if long {
+                9 + chance.of(8)
+            } else {
+                2 + chance.of(6)
+            },
+            spring: chance.between(0.5, 2.0),
+            damper,
+            gain: chance.normal() * chance.log(1.0, 100.0) * damper,
+            rate_gain: chance.normal() * damper,
+            tau: chance.log(0.1, 20.0),
+        };
+        let of = Linear::Matrix(Box::new(of_chain(&chain)));
+        let count = of.roots(&Stop::default()).count(chain.tau, 1.0);
+        let decided = count.filter(|count| !count.marginal);
+        undecided += u64::from(decided.is_none());
+        let Some(walked) = chain.right_of(0.0) else {
+            continue;
+        };
+        compared += 1;
+        assert!(
+            decided.is_none_or(|count| count.n_unstable == walked),
+            "{seed}: {chain:?} {count:?} {walked}"
+        );
+    }
+    println!("{asked} chains, {compared} compared, {undecided} undecided");
+    assert!(2 * compared > asked, "{compared}");
+    assert!(100 * undecided <= 2 * asked.max(100), "{undecided}");
+}
+
 /// A lightly damped mass with the damping ratio ζ and a feedback just stronger than it: the
 /// right values have 50 digits.
 #[test]

@@ -154,7 +154,7 @@ fn what_is_not_known_of_matrices_is_refused() {
     expect(
         &Folder::new().run(&best),
         2,
-        "best settings are not searched of a system of matrices",
+        "best settings are not searched of a system of matrices that is no exact P",
     );
     let sweep = "system = \"ring_road\"\nboundaries = true\n[axes]\nb = [0.1, 0.2]\ntau = [1, 2]\n";
     let folder = Folder::with(&[("sweep.toml", sweep)]);
@@ -162,10 +162,93 @@ fn what_is_not_known_of_matrices_is_refused() {
     expect(
         &run,
         2,
-        "of a system of matrices no crossing curves are known",
+        "boundaries: of a system of matrices that is no exact P + Q exp(-s tau)",
     );
     let odd = "A0 = [[\"1/k\"]]\nA1 = [[1]]\n[parameters]\nk = 0\n";
     let folder = Folder::with(&[("odd.toml", odd)]);
     let asked = folder.run(&["point", "--system", "odd.toml", "--tau", "1"]);
-    expect(&asked, 2, "A0: `1/k` has no finite value");
+    expect(&asked, 2, "A0[0][0]: `1/k` has no finite value");
+}
+
+/// Two masses with one delayed signal, as matrices and by their polynomials.
+const TWO_MASSES: [&str; 2] = [
+    "A0 = [[0, 0, 1, 0], [0, 0, 0, 1], [-2, 1, -0.25, 0], [1, -1, 0, -0.25]]\n\
+     feedback = { B = [[0], [0], [0], [1]], C = [[0, \"-g\", 0, \"-h\"]] }\n\
+     [parameters]\ng = 0.3\nh = 0.25\n",
+    "P = \"(s^2 + 0.25*s + 2)*(s^2 + 0.25*s + 1) - 1\"\n\
+     Q = \"(g + h*s)*(s^2 + 0.25*s + 2)\"\n\
+     [parameters]\ng = 0.3\nh = 0.25\n",
+];
+
+#[test]
+fn curves_of_one_delayed_signal_are_those_of_polynomials() {
+    let sweep = |system: &str| {
+        format!(
+            "system = \"{system}.toml\"\nfields = [\"n_unstable\", \"abscissa\"]\n\
+             boundaries = true\n[axes]\ng = {{ from = 0.0, to = 1.5, points = 6 }}\n\
+             tau = {{ from = 0.0, to = 9.0, points = 10 }}\n"
+        )
+    };
+    let (m, p) = (sweep("m"), sweep("p"));
+    let [of_m, of_p] = TWO_MASSES;
+    let files = [
+        ("m.toml", of_m),
+        ("p.toml", of_p),
+        ("ms.toml", &m),
+        ("ps.toml", &p),
+    ];
+    let folder = Folder::with(&files);
+    let tables = ["m", "p"].map(|name| {
+        let (sweep, map) = (format!("{name}s.toml"), format!("{name}.h5"));
+        expect(&folder.run(&["run", &sweep, "-o", &map, "--quiet"]), 0, "");
+        ["boundaries", "cells"].map(|table| {
+            let rows = out(&folder.run(&["export", &map, "--table", table]));
+            assert!(rows.lines().count() > 60, "{rows}");
+            rows
+        })
+    });
+    let [of_matrices, of_polynomials] = tables;
+    for (one, other) in of_matrices.iter().zip(&of_polynomials) {
+        assert_eq!(one.lines().count(), other.lines().count());
+        for (a, b) in one.lines().zip(other.lines()) {
+            for (a, b) in a.split(',').zip(b.split(',')) {
+                match (a.parse::<f64>(), b.parse::<f64>()) {
+                    (Ok(x), Ok(y)) if x.is_finite() => {
+                        assert!((x - y).abs() <= 1e-9 * (1.0 + y.abs()), "{a} {b}");
+                    }
+                    _ => assert_eq!(a, b),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn best_settings_of_one_delayed_signal_are_those_of_polynomials() {
+    let [of_matrices, of_polynomials] = TWO_MASSES.map(|system| {
+        let folder = Folder::with(&[("system.toml", system)]);
+        let asked = [
+            "best",
+            "--json",
+            "--system",
+            "system.toml",
+            "--search",
+            "g",
+            "--search-from",
+            "-1",
+            "--search-to",
+            "1",
+            "--tau-to",
+            "8",
+        ];
+        let found = folder.run(&asked);
+        assert_eq!(found.status.code(), Some(0), "{}", err(&found));
+        program::json(&found)["best"].clone()
+    });
+    for key in ["value", "tau", "abscissa"] {
+        let expected = of_polynomials[key]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{of_polynomials}"));
+        near(&of_matrices[key], expected, 1e-7, key);
+    }
 }

@@ -42,6 +42,11 @@ impl From<FeedbackForm> for Composition {
     }
 }
 
+/// An error of a phase that is not worth a slower evaluation in a system of this degree.
+pub(in crate::linear) fn enough(degree: usize) -> f64 {
+    ENOUGH[usize::from(degree > MOST)]
+}
+
 impl Composition {
     /// This composition with all polynomials divided by λ.
     pub(super) fn divided_by_variable(&self) -> Self {
@@ -125,7 +130,7 @@ impl System {
         if self.class() == Class::NeutralLimit {
             modulus = modulus.without_open_leading();
         }
-        let enough = ENOUGH[usize::from(on_axis.degree() > MOST)];
+        let enough = enough(on_axis.degree());
         let near = each_switch(&modulus, Some(on_axis), |switch| {
             visit(&switch, on_axis.phase(switch.omega, switch.error, enough));
         });

@@ -69,6 +69,7 @@ mod zero_delay;
 pub(crate) mod zeros;
 
 pub use at_origin::OriginError;
+pub(super) use composition::enough;
 pub use latency::Form;
 pub use line::DelayLine;
 pub(super) use loop_sides::{LoopSide, beyond_positive, without_idle_zeros};

@@ -30,7 +30,7 @@ pub enum Linear {
     General(Box<System>),
     /// One that is read from time to time.
     Sampled(SampledLoop),
-    /// One that is given as matrices.
+    /// One that is given as matrices; where P and Q say it all as well, answers are of them.
     Matrix(Box<MatrixSystem>),
 }
 
@@ -46,7 +46,7 @@ impl Linear {
     }
 
     /// The system; the letter's own in feedback form, none of a sampled one or of
-    /// matrices.
+    /// matrices that are no P and Q.
     #[must_use]
     pub fn system(&self) -> Option<System> {
         match self {
@@ -55,7 +55,21 @@ impl Linear {
                 Some(of.system())
             }
             Self::General(system) => Some(**system),
-            Self::Sampled(_) | Self::Matrix(_) => None,
+            Self::Sampled(_) => None,
+            Self::Matrix(of) => of.expanded(),
+        }
+    }
+
+    /// This model as P and Q where it is one of matrices of which they say all, this model itself
+    /// elsewhere.
+    #[must_use]
+    pub(crate) fn settled(self) -> Self {
+        match &self {
+            Self::Matrix(of) => match of.as_polynomials() {
+                Some(system) => Self::General(Box::new(system)),
+                None => self,
+            },
+            _ => self,
         }
     }
 
@@ -77,7 +91,10 @@ impl Linear {
             Self::Letter(groups) => Box::new(LetterRoots::new(*groups)),
             Self::General(system) => Box::new(GeneralRoots::new(counter(system))),
             Self::Sampled(of) => Box::new(SampledRoots::new(*of)),
-            Self::Matrix(of) => Box::new(MatrixRoots::new((**of).clone())),
+            Self::Matrix(of) => match of.as_polynomials() {
+                Some(system) => Box::new(GeneralRoots::new(counter(&system))),
+                None => Box::new(MatrixRoots::new((**of).clone())),
+            },
         }
     }
 }

@@ -12,13 +12,15 @@
 //! Σ p_k(λ) z^k. λ = iω is a root where an eigenvalue μ of G(iω) has the modulus 1, at the delays
 //! τ_k = (arg μ + 2πk)/ω. These ω are the imaginary eigenvalues of a real matrix of 2nK rows, that
 //! of the closed loop of G(λ) ⊗ 1 and 1 ⊗ G(−λ): it maps a matrix U to G(λ) U G(−λ)ᵀ.
-//! Determinants are never expanded in powers of λ: each frequency is made sharp on det M itself,
-//! and what rounding of the numbers of M does to it is carried.
+//! Determinants are expanded in powers of λ only where no digit is lost. Elsewhere each frequency
+//! is made sharp on det M itself, and what rounding of the numbers of M does to it is carried.
 //!
 //! - `balance`: units of states, signals and time that keep digits
 //! - `dense`: real matrices
+//! - `expanded`: P and Q of one delayed signal, where that loses no digits
 //! - `line`: all delays: crossings and counts
 //! - `on_axis`: where eigenvalues of G on an axis have the modulus 1
+//! - `pattern`: which powers of λ a determinant has by its zeros alone
 //! - `rightmost`: the rightmost roots, with their number counted
 //! - `roots`: what is told of the roots
 //! - `singular`: complex matrices that are nearly singular
@@ -27,8 +29,10 @@
 
 mod balance;
 mod dense;
+mod expanded;
 mod line;
 mod on_axis;
+mod pattern;
 mod rightmost;
 mod roots;
 mod singular;

@@ -13,7 +13,7 @@ use crate::setting::limit_spec;
 use crate::setting::needs::{Stage, no_meaning, unmet};
 use crate::setting::parameter::{Group, Parameter};
 use crate::setting::search::Search;
-use crate::setting::system::SystemModel;
+use crate::setting::spec::most;
 use crate::setting::values::Setting;
 use crate::setting::vc_keys::VcKeys;
 use crate::text::{Shown, SpecError};
@@ -117,8 +117,7 @@ impl SweepFile<'_> {
         let Some((key, _)) = found else {
             return Ok(());
         };
-        let of_system = fixed.system();
-        let (message, help) = match of_system.and_then(SystemModel::without_curves) {
+        let (message, help) = match most(fixed, &self.spec.axes).without_curves() {
             Some(of) => (
                 format!("{key}: of {of} no crossing curves are known"),
                 "counts, roots and delays of its cells are: leave it out",

@@ -361,7 +361,7 @@ impl ClosedLoop {
         let [above, below] = self.controller.at(values, stacks)?;
         let (p, q) = (times(&below, &den, LOOP)?, times(&above, &num, LOOP)?);
         let refuse = |what: String| NoAnswer::Undefined {
-            polynomial: LOOP,
+            polynomial: LOOP.into(),
             what,
         };
         let (m, n) = (q.degree(), p.degree());

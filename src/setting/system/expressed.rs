@@ -37,7 +37,7 @@ fn value(
     tape.at(values, stacks).map_err(|place: Range<usize>| {
         let part = text.get(place).unwrap_or(text);
         NoAnswer::Undefined {
-            polynomial,
+            polynomial: polynomial.into(),
             what: format!("`{part}` has no finite value at this setting"),
         }
     })
@@ -50,7 +50,7 @@ pub(super) fn times(
     polynomial: &'static str,
 ) -> Result<Polynomial, NoAnswer> {
     first.times(second).map_err(|_| NoAnswer::Undefined {
-        polynomial,
+        polynomial: polynomial.into(),
         what: format!("its degree is above {MOST_DEGREE} at this setting"),
     })
 }

@@ -272,7 +272,7 @@ fn square(of: &WrittenMatrix) -> Result<usize, SpecError> {
 /// Why numbers make no system of the form that `key` gives.
 pub(super) fn refused(key: &'static str, error: &MatrixError) -> NoAnswer {
     NoAnswer::Undefined {
-        polynomial: key,
+        polynomial: key.into(),
         what: format!("{error} at this setting"),
     }
 }
@@ -306,14 +306,28 @@ impl Entries {
     }
 
     fn at(&self, values: &[f64], stacks: &mut Stacks) -> Result<Matrix, NoAnswer> {
-        let entries = self.values.iter().map(|value| match value {
+        let entries = self.values.iter().enumerate();
+        let entries = entries.map(|(place, value)| match value {
             Value::Number(value) => Ok(*value),
             Value::Of(expression) => {
-                let found = expression.at(self.name, values, stacks)?;
+                let found = expression.at(self.name, values, stacks);
+                let found = found.map_err(|why| self.named(place, why))?;
                 Ok(found.coefficients()[0])
             }
         });
         let entries = entries.collect::<Result<Vec<f64>, NoAnswer>>()?;
         Ok(Matrix::new(self.rows, self.columns, entries))
+    }
+
+    /// Why the entry at `place` has no value, with its name, as A0[0][1].
+    fn named(&self, place: usize, why: NoAnswer) -> NoAnswer {
+        let (row, column) = (place / self.columns, place % self.columns);
+        match why {
+            NoAnswer::Undefined { what, .. } => NoAnswer::Undefined {
+                polynomial: format!("{}[{row}][{column}]", self.name).into(),
+                what,
+            },
+            other => other,
+        }
     }
 }

@@ -168,12 +168,12 @@ impl SystemModel {
         self.tapes().any(|of| of.uses(tau))
     }
 
-    /// What this system is where it has neither crossing curves nor best settings; none where it
-    /// has them.
+    /// What this system is where it has crossing curves and best settings only as far as its
+    /// numbers make it P and Q, or none at all; none where it has them.
     #[must_use]
-    pub(crate) fn without_curves(&self) -> Option<&'static str> {
+    pub(in crate::setting) fn without_curves(&self) -> Option<&'static str> {
         match self.form {
-            Form::Matrices(_) => Some("a system of matrices"),
+            Form::Matrices(_) => Some("a system of matrices that is no exact P + Q exp(-s tau)"),
             Form::Powers(_) => Some("a system with powers of its delay"),
             _ if self.ignored_roots > 0 => Some("a system with ignore_roots_at_zero"),
             _ => None,
@@ -235,7 +235,7 @@ impl SystemModel {
         let rest = found.without_roots_at_zero(self.ignored_roots);
         let rest = rest.map(|rest| Linear::General(Box::new(rest)));
         rest.map_err(|why| NoAnswer::Undefined {
-            polynomial: IGNORED_ROOTS,
+            polynomial: IGNORED_ROOTS.into(),
             what: match why {
                 OriginError::Fewer(0) => "D has no root at 0 at every delay here".into(),
                 OriginError::Fewer(n) => {
@@ -291,7 +291,7 @@ impl SystemModel {
                     let (m, n) = (gain.degree(), open.degree());
                     let what = format!("its degree is {m} here and that of B {n}: not smaller");
                     return Err(NoAnswer::Undefined {
-                        polynomial: "A",
+                        polynomial: "A".into(),
                         what,
                     });
                 }

@@ -65,7 +65,7 @@ impl<'p> Lines<'p> {
             if self.setting.system().is_none() {
                 self.groups()?;
             }
-            return Ok(model);
+            return Ok((model.0.settled(), model.1));
         }
         let (groups, time_unit) = self.groups()?;
         Ok((Linear::Letter(groups), time_unit))

@@ -5,7 +5,6 @@ use std::fmt;
 use crate::setting::axis::plane_of_curves;
 use crate::setting::parameter::Parameter;
 use crate::setting::spec::SweepSpec;
-use crate::setting::system::SystemModel;
 
 /// The most planes whose crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
@@ -74,7 +73,7 @@ pub(super) fn of(spec: &SweepSpec) -> Result<(usize, usize), NoBoundaries> {
     if spec.is_sampled() {
         return Err(NoBoundaries::Sampled);
     }
-    if let Some(of) = spec.fixed.system().and_then(SystemModel::without_curves) {
+    if let Some(of) = spec.without_curves() {
         return Err(NoBoundaries::OfSystem(of));
     }
     let outer = spec.axes.iter().enumerate();
