@@ -108,7 +108,7 @@ pub(crate) const SYSTEM: [Key; 17] = [
     ),
     key(
         "ignore_roots_at_zero",
-        "a whole number, at most 16",
+        "a whole number, at most 32",
         "0",
         "so many roots at 0, which D has at every delay, come from its form and do not count; D \
          times s for a distributed delay has one",

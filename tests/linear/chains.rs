@@ -1,4 +1,4 @@
-//! Lightly damped chains of masses with delayed feedback, degree 6 to 16, in any unit of time:
+//! Lightly damped chains of masses with delayed feedback, degree 6 to 32, in any unit of time:
 //! counts, crossings and abscissae against numbers found with many digits (`reference/chains.csv`
 //! and those given here) and against a walk along the argument of D, taken from the recursion over
 //! the masses. `SLIPMAP_CASES` says how many.
@@ -182,6 +182,44 @@ fn chains_by_chance_are_what_a_walk_says() {
     println!("{cases} chains: {walked} walked, {certified} certified");
     assert!(walked >= cases * 19 / 20, "{walked} of {cases}");
     assert!(certified >= cases * 19 / 20, "{certified} of {cases}");
+}
+
+/// Nine to sixteen masses, degree 18 to 32, whose coefficients are sums and products of f64.
+#[test]
+fn chains_of_degree_18_to_32_are_right_or_undecided() {
+    let cases = asked("SLIPMAP_CASES", 100).div_ceil(2);
+    let mut chance = Chance(asked("SLIPMAP_SEED", 63));
+    let (mut walked, mut undecided) = (0, 0);
+    for _ in 0..cases {
+        let chain = Chain {
+            masses: 9 + chance.of(8),
+            damper: chance.log(0.01, 0.5),
+            ..by_chance(&mut chance)
+        };
+        let unit = chance.log(1e-3, 1e3);
+        let scaled = chain.in_unit(unit);
+        let system = scaled.system();
+        let place = format!("{chain:?} {unit}");
+        let Some(n) = chain.right_of(0.0) else {
+            continue;
+        };
+        walked += 1;
+        let count = DelayLine::of(&system).count(scaled.tau, MarginalTolerance::default());
+        undecided += u32::from(count.marginal);
+        assert!(
+            count.marginal || count.n_unstable == n,
+            "{place}: {n} {count:?}"
+        );
+        let right = RootCounter::new(&system).right_of(scaled.tau, 0.0);
+        let told = [RightOf::Roots(n), RightOf::Undecided];
+        assert!(told.contains(&right), "{place}: {n} {right:?}");
+    }
+    println!("{cases} chains, {walked} walked, {undecided} undecided");
+    assert!(walked >= cases * 9 / 10, "{walked} of {cases}");
+    assert!(
+        20 * u64::from(undecided) <= cases.max(20),
+        "{undecided} of {cases}"
+    );
 }
 
 /// On both sides of a crossing delay, so near that a wrong delay is noticed.

@@ -477,7 +477,7 @@ fn bad_systems(good: &str) -> Vec<String> {
         good.replace("s^2", "s**2"),
         good.replace("+ 1\"", "+\""),
         good.replace("+ 1\"", "+ (1\""),
-        good.replace("s^2", "s^17"),
+        good.replace("s^2", "s^33"),
         good.replace("s^2", "s^0.5"),
         good.replace("s^2", "s^2/s"),
         good.replace("-zeta", "exp(-s)"),
@@ -501,7 +501,7 @@ fn bad_systems(good: &str) -> Vec<String> {
         good.replace("\"-zeta\"", "[1, \"-zeat\"]"),
         good.replace("\"-zeta\"", "[1, \"zeta*s\"]"),
         good.replace("\"-zeta\"", "[\"1/zeta\", 2]"),
-        good.replace("\"-zeta\"", &format!("[1{}]", ", 0".repeat(17))),
+        good.replace("\"-zeta\"", &format!("[1{}]", ", 0".repeat(33))),
     ]
 }
 

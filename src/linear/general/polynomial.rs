@@ -7,7 +7,7 @@ use crate::linear::rounded::Rounded;
 use crate::model::ModelError;
 
 /// The largest degree of a polynomial here.
-pub const MOST_DEGREE: usize = 16;
+pub const MOST_DEGREE: usize = 32;
 const LENGTH: usize = MOST_DEGREE + 1;
 
 /// The error of a polynomial with a larger degree than [`MOST_DEGREE`].
@@ -15,7 +15,7 @@ fn too_large(degree: usize) -> ModelError {
     ModelError {
         parameter: "degree",
         value: degree as f64,
-        allowed: "at most 16",
+        allowed: "at most 32",
         at_speed: None,
     }
 }
@@ -365,7 +365,8 @@ mod tests {
         let too_long = Polynomial::new(&[1.0; LENGTH + 1]).unwrap_err();
         assert_eq!(too_long.value, LENGTH as f64);
         assert_eq!(too_long.allowed, format!("at most {MOST_DEGREE}"));
-        assert_eq!(largest.power(2).unwrap_err().value, 32.0);
-        assert_eq!(largest.times(&largest).unwrap_err().value, 32.0);
+        let twice = 2.0 * MOST_DEGREE as f64;
+        assert_eq!(largest.power(2).unwrap_err().value, twice);
+        assert_eq!(largest.times(&largest).unwrap_err().value, twice);
     }
 }
