@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Charts the stability lobes of turning by slipmap, by Python packages and by plain numpy, and counts wrong cells.
+# Charts the stability lobes of turning, of seven masses and of a tool with two modes by slipmap, by Python packages and by
+# plain numpy, and counts wrong cells.
 #
 #   benches/peers/lobes.sh [ROUNDS] [FOLDER]
 #
 # ROUNDS is 2 unless given. FOLDER keeps the Python environment; without it that is made in a temporary folder and removed.
 # Takes about seven minutes, ten on a busy machine. Needs Python 3.11 or newer with venv, and PyPI. $SLIPMAP names a
-# program that is built already; without it one is built. What is measured stands at the head of turning_lobes.py.
+# program that is built already; without it one is built. What is measured stands at the heads of turning_lobes.py and
+# matrix_lobes.py.
 set -euo pipefail
 
 peers=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -26,4 +28,5 @@ script=$peers/turning_lobes.py
 python_of "$script"
 uptime
 "$work/venv/bin/python" "$script" "$rounds"
+"$work/venv/bin/python" "$peers/matrix_lobes.py" "$rounds"
 uptime
