@@ -17,7 +17,7 @@ use crate::setting::best_plane::searched_gain;
 use crate::setting::no_answer::NoAnswer;
 use crate::setting::parameter::Parameter;
 use crate::setting::quantity::Quantity;
-use crate::setting::system::Evaluation;
+use crate::setting::system::{Evaluation, SystemModel};
 use crate::setting::values::Setting;
 
 /// Largest |b| for which best settings are searched.
@@ -36,6 +36,8 @@ const BEYOND_FOLD: f64 = 4.0;
 /// Range by default of a parameter without bounds of a system from a file: so far on either side of
 /// 0, over the size of its default or 1.
 const FARTHEST: f64 = 4.0;
+/// Where gains of 0 would drop a part of a controller, so far beside 0 is searched, over the range.
+const BESIDE_ZERO: f64 = 1e-9;
 /// Range of the memory by default: how near to ±1.
 const MOST_MEMORY: f64 = 0.95;
 
@@ -297,9 +299,19 @@ impl Scales {
         of: impl FnOnce(&Search<General>) -> T,
     ) -> Result<T, NoAnswer> {
         let moved = RefCell::new((setting.clone(), Evaluation::default()));
+        // Where a part of a controller vanishes the plane has a point or a line of its own.
+        let drops_parts = setting.system().is_some_and(SystemModel::drops_parts);
+        let beside = |value: f64, (from, to): (f64, f64)| match value == 0.0 && drops_parts {
+            true if to > 0.0 => BESIDE_ZERO * (to - from),
+            true => BESIDE_ZERO * (from - to),
+            false => value,
+        };
         let set = |setting: &mut Setting, p: f64, q: f64| {
-            setting.vary(&plane.p, p * self.p);
-            setting.vary(&plane.q, q * self.q);
+            setting.vary(&plane.p, beside(p * self.p, ranges.p));
+            match plane.has_delay() {
+                true => setting.set(Parameter::Tau, q * self.q),
+                false => setting.vary(&plane.q, beside(q, ranges.q)),
+            }
         };
         let system_at = |p: f64, q: f64| {
             let (setting, scratch) = &mut *moved.borrow_mut();

@@ -69,7 +69,8 @@ pub fn best_over_delays(
         Some((_, found)) => found,
         None => best_settings(&with_delay(setting, tau), plane, ranges, stop)?,
     };
-    if tau - from <= PRECISION * (to - from) || to - tau <= PRECISION * (to - from) {
+    let near = PRECISION * (to - from);
+    if from < to && (tau - from <= near || to - tau <= near) {
         found.overall.kind = Kind::Edge;
     }
     Ok((tau, found))

@@ -214,8 +214,8 @@ impl Args {
         if let Some(fixed) = fixed.or(delay_twice.then_some(&tau)) {
             return Err(Failure::bad_input_with_help(
                 format!("a value of {} is given, which is searched", fixed.name()),
-                "leave it out; --search-from, --search-to, --tau-from and --tau-to are the \
-                 ranges of the search",
+                "leave it out; --range NAME=FROM:TO, --search-from, --search-to, --tau-from and \
+                 --tau-to are the ranges of the search",
             ));
         }
         Ok((asked, plane))

@@ -42,7 +42,12 @@ pub(super) struct RangeArgs {
     tau_to: Option<Amount>,
     /// The range to search of a parameter by its name, in place of the four flags above; once for
     /// each
-    #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true, value_parser = parse_range)]
+    #[arg(
+        long,
+        value_name = "NAME=FROM:TO",
+        allow_hyphen_values = true,
+        value_parser = parse_range
+    )]
     range: Vec<NamedRange>,
 }
 
@@ -177,6 +182,13 @@ fn ordered([from, to]: [Given; 2], default: (f64, f64)) -> Result<(f64, f64), Fa
     let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));
     if low <= high {
         return Ok((low, high));
+    }
+    if from_flag == to_flag {
+        let (low, high) = (Shown(low), Shown(high));
+        return Err(Failure::bad_input_with_help(
+            format!("{from_flag} from {low} is above its end {high}"),
+            format!("{from_flag} NAME={high}:{low}"),
+        ));
     }
     let origin = |given: Option<f64>| given.map_or(", its default", |_| "");
     Err(Failure::bad_input_with_help(

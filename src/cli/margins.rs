@@ -17,6 +17,7 @@ use super::asked::{Asked, subject};
 use super::failure::Failure;
 use super::inputs_line;
 use super::json::{self, AnswerSchema};
+use super::loop_args::LoopArgs;
 use super::margin_words::{Crossings, along, between, known, up_to};
 use super::output::tell_dimensionless;
 use super::parameter_values::{amount_of, in_units};
@@ -37,6 +38,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "RATE", default_value = "0", allow_hyphen_values = true,
           value_parser = amount_of(Parameter::AlphaV))]
     decay: Amount,
+    #[command(flatten)]
+    pictures: LoopArgs,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
@@ -51,6 +54,7 @@ pub(super) fn described() -> AnswerSchema {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    args.pictures.check(args.point.map())?;
     let asked = args.asked()?;
     let setting = &asked.setting;
     let decay = args.decay(&asked.units)?;
@@ -69,7 +73,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     if args.json {
         let inputs = asked.inputs(|_| true).and("decay", decay);
-        return json::print(&inputs, &margins);
+        json::print(&inputs, &margins)?;
+        return args.pictures.draw(&asked, &margins, args.json);
     }
     let wanted = Wanted {
         roots: 1,
@@ -81,13 +86,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let mut out = ForPeople::begin();
     inputs_line::print(&mut out, setting, &asked.units, &[])?;
-    Ok(print(
-        &mut out,
-        &margins,
-        violations,
-        setting,
-        &asked.units,
-    )?)
+    print(&mut out, &margins, violations, setting, &asked.units)?;
+    args.pictures.draw(&asked, &margins, args.json)
 }
 
 impl Args {
@@ -200,7 +200,11 @@ fn print_gain(
 ) -> std::io::Result<()> {
     const NAME: &str = "gain_margin";
     let Some(gain) = margins.gain_margin else {
-        return unknown.map_or(Ok(()), |of| row(NAME, format!("not known of {of}")));
+        return match unknown {
+            Some(of) => row(NAME, format!("not known of {of}")),
+            None if margins.undecided.contains(&NAME) => row(NAME, "not decided".to_owned()),
+            None => Ok(()),
+        };
     };
     let lower = match gain.lower > 0.0 {
         true => gain.lower,
@@ -225,7 +229,10 @@ fn print_along(
     units: &Units,
 ) -> std::io::Result<()> {
     if setting.system().is_some() && margins.tau_margin.is_none() {
-        let why = "not known: the system is another one at other delays";
+        let why = match setting.has_lines() {
+            true => "not decided",
+            false => "not known: the system is another one at other delays",
+        };
         row("tau_margin", why.to_owned())?;
     }
     let (last, omegas) = (&margins.looked_up_to, &margins.crossing_frequencies);

@@ -34,6 +34,7 @@
 //! - `kind`: the kind of a file of slipmap, for commands that take another kind
 //! - `law_args`: the flags of a friction law besides its parameters
 //! - `limit_args`: the flags for a point of the limit of a short delay
+//! - `loop_args`: the flags of pictures of a loop
 //! - `man`: `slipmap man`
 //! - `margin_words`: margins in words: ranges, and the frequencies of crossings
 //! - `margins`: `slipmap margins`
@@ -115,6 +116,7 @@ mod json;
 mod kind;
 mod law_args;
 mod limit_args;
+mod loop_args;
 mod man;
 mod margin_words;
 mod margins;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::explore::along_delay::AlongDelay;
 use crate::explore::point::{BlockPoint, Point, SystemPoint};
-use crate::explore::stability::Wanted;
+use crate::explore::stability::{Stability, Wanted};
 use crate::model::stop::Stop;
 use crate::report::picture::{self, Picture, PointPicture};
 use crate::setting::Parameter;
@@ -98,18 +98,12 @@ impl Args {
             }
             None => self.point.cell_of_system()?,
         };
-        match (of_system, &self.plot) {
-            (Some(_), Some(_)) => Err(Failure::bad_input_with_help(
-                "--plot has no picture of a point of a system from a file",
-                "a sweep of the system draws its stability; --json has its roots",
-            )),
-            (Some(asked), None) => Ok(asked),
-            (None, plot) => {
-                if let Some(plot) = plot {
-                    check_picture("--plot", plot, self.point.map())?;
-                }
-                self.point.read()
-            }
+        if let Some(plot) = &self.plot {
+            check_picture("--plot", plot, self.point.map())?;
+        }
+        match of_system {
+            Some(asked) => Ok(asked),
+            None => self.point.read(),
         }
     }
 }
@@ -140,10 +134,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let mut out = ForPeople::begin();
         point_text::print(&mut out, &point, &asked, args.digits.get())?;
     }
-    let (Some(plot), Point::Block(listed)) = (&args.plot, &point) else {
+    let Some(plot) = &args.plot else {
         return Ok(());
     };
-    draw(&asked, listed, plot)?;
+    draw(&asked, point.stability(), plot)?;
     match args.json {
         true => Ok(()),
         false => say::result(plot.display()),
@@ -152,20 +146,24 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 
 /// Draws the point with the number of roots for a picture; with those of `listed` if some of the
 /// others are not found.
-fn draw(asked: &Asked, listed: &BlockPoint, path: &Path) -> Result<(), Failure> {
+fn draw(asked: &Asked, listed: &Stability, path: &Path) -> Result<(), Failure> {
     let wanted = Wanted {
         roots: ROOTS_DRAWN,
         line: None,
     };
     let more = Point::at(&asked.setting, wanted, &Stop::default())?;
-    let point = match &more {
-        Point::Block(more) if !more.stability.spectrum.incomplete => more,
+    let stability = match more.stability() {
+        more if !more.spectrum.incomplete => more,
         _ => listed,
     };
-    let along = AlongDelay::of(&asked.setting)?;
+    let has_lines = asked.setting.has_lines();
+    let along = has_lines
+        .then(|| AlongDelay::of(&asked.setting))
+        .transpose()?;
     let drawn = PointPicture {
-        point,
-        along: &along,
+        setting: &asked.setting,
+        stability,
+        along: along.as_ref(),
         units: &asked.units,
     };
     let picture = picture::draw_point(&drawn, path);

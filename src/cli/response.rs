@@ -237,6 +237,14 @@ fn verdict(asked: &Asked, found: &TimeResponse, digits: Digits) -> String {
             let growth = time(1.0 / abscissa);
             format!("does not settle: disturbances grow by a factor e in {growth}")
         }
+        (None, _)
+            if found
+                .stability
+                .n_unstable
+                .is_none_or(|_| found.stability.marginal) =>
+        {
+            "is not known to settle: stability is not decided".to_owned()
+        }
         (None, _) => "does not settle".to_owned(),
     }
 }

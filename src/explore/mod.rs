@@ -16,6 +16,7 @@
 //! - [`best`]: the settings of fastest decay, with all about the recommended one; [`robust`]: what
 //!   it is to stand; [`best_answer`]: the same as plain data
 //! - [`measure`]: an experiment that measures friction through control, at all of its v0
+//! - [`loop_response`]: the loop of a point over the frequency
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`response`]: the response of a system in time
 //! - [`law`]: a friction law as a curve
@@ -43,6 +44,7 @@ pub mod encoded;
 pub mod given_setting;
 pub mod known;
 pub mod law;
+pub mod loop_response;
 pub mod margin_crossings;
 pub mod margin_kind;
 pub mod margin_range;

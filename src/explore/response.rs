@@ -71,7 +71,10 @@ impl TimeResponse {
             line: None,
         };
         let stability = Stability::of(&linear, (time_unit, tau), wanted, stop);
-        let settles = stability.stable && !stability.marginal;
+        let spectrum = &stability.spectrum;
+        // Counts may be open where the rightmost root is certain to decay.
+        let decays = spectrum.certified && spectrum.certified_line < 0.0;
+        let settles = decays || (stability.stable && !stability.marginal);
         let (excited, settles_at) = excited(setting, &linear, to, tau)?;
         let until = until.unwrap_or_else(|| default_until(&stability, tau));
         let settles_at = settles_at.filter(|_| settles);

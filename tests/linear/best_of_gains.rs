@@ -235,6 +235,24 @@ fn the_program_searches_two_gains_and_the_delay() {
     );
 }
 
+/// s(4s + 1) e^s = −(k_p s + k_i) has a triple root where 4s² + 17s + 10 = 0. Where k_i is exactly 0
+/// the controller has no integrator, and no root near 0: that point alone was told as the best one.
+#[test]
+fn a_part_of_a_controller_that_vanishes_is_no_best_setting() {
+    let folder = Folder::new();
+    let root = (-17.0 + 129.0_f64.sqrt()) / 8.0;
+    for gains in ["--search k_p --search k_i", "--search k_i --search k_p"] {
+        let found = json(
+            &folder,
+            &format!("best --system pi_loop {gains} --tau 1 --json"),
+        );
+        let best = &found["best"];
+        assert_eq!(best["kind"], "triple real root", "{best}");
+        let apart = (number(&best["abscissa"]) - root).abs();
+        assert!(apart <= number(&best["margin"]), "{apart} {best}");
+    }
+}
+
 /// Ranges that nobody searches, or that are given twice, are told with what to type.
 #[test]
 fn ranges_that_do_not_fit_are_refused() {

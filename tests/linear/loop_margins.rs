@@ -1,5 +1,5 @@
-//! Margins of any loop: closed forms, and random loops against counts by the argument principle and
-//! against scans of L along the imaginary axis, both written here.
+//! Margins of any loop: closed forms, and random loops against slipmap's own counts by the
+//! argument principle, and against scans of L along the imaginary axis that are written here.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -30,6 +30,7 @@ mod export;
 mod fits;
 mod flips;
 mod formulas;
+mod loop_plot;
 mod loops;
 mod manners;
 mod matrix_systems;

@@ -9,7 +9,7 @@ use crate::program::{self, Folder, err, expect, out};
 const ROOTS: usize = 14;
 
 /// Where marks stand in a picture, in its units.
-struct Svg(String);
+pub(crate) struct Svg(pub(crate) String);
 
 impl Svg {
     /// The numbers of an attribute.
@@ -21,7 +21,7 @@ impl Svg {
     }
 
     /// The middles of all dots of a diameter.
-    fn dots(&self, diameter: f64) -> Vec<(f64, f64)> {
+    pub(crate) fn dots(&self, diameter: f64) -> Vec<(f64, f64)> {
         let lines = self.0.lines().filter(|l| l.starts_with("<polyline"));
         let dots = lines.filter(|l| Self::numbers(l, "stroke-width") == [10.0 * diameter]);
         let middle = |line| {
@@ -29,6 +29,17 @@ impl Svg {
             (0.5 * (p[0] + p[2]), p[1])
         };
         dots.map(middle).collect()
+    }
+
+    /// Where upright dashed lines are, from left to right in the order of drawing, each once.
+    pub(crate) fn uprights(&self) -> Vec<f64> {
+        let lines = self.0.lines().filter(|l| l.starts_with("<polyline"));
+        let thin = lines.filter(|l| Self::numbers(l, "stroke-width") == [18.0]);
+        let points = thin.map(|line| Self::numbers(line, "points"));
+        let upright = points.filter(|p| p.len() == 4 && p[0] == p[2] && p[1] != p[3]);
+        let mut places: Vec<f64> = upright.map(|p| p[0]).collect();
+        places.dedup();
+        places
     }
 
     /// Left and right ends of all rectangles of a colour.
@@ -81,6 +92,7 @@ fn roots_and_stable_delays_stand_where_they_are() {
         &FIG_3A[..],
         &["--mu-prime=-0.3", "--alpha-v=-0.33", "--tau=9"],
         &["--mu-prime=-0.2", "--alpha-v=-0.4", "--tau=3"],
+        &["--system=pi_loop", "--tau=2"],
     ] {
         let (told, svg) = drawn(&folder, args);
         let roots: Vec<[f64; 2]> = serde_json::from_value(told["roots"].clone()).unwrap();

@@ -529,7 +529,6 @@ fn mistakes_are_shown_in_place() {
         &["--tau", "1", "--set", "memory=0.5"],
         &["--tau", "1", "--mu-prime", "-0.3"],
         &["--tau", "1", "--line", "inf"],
-        &["--tau", "1", "--plot", "roots.png"],
     ] {
         refused(&folder, &[&turning[..], more].concat());
     }

@@ -9,16 +9,16 @@
 //! argument principle confirms that no root lies farther right, and where no place around it is
 //! better.
 //!
-//! A region is a connected set of stable settings *inside the box*, at the resolution of the p sampled:
-//! 193 evenly over the box, and ever more densely towards those at which the crossings
+//! A region is a connected set of stable settings *inside the box*, at the resolution of the p
+//! sampled: 193 evenly over the box, and ever more densely towards those at which the crossings
 //! change their number. A lobe between two neighbouring samples is missed; lobes that end in a
-//! point at such a gain are not, however small, down to 1e-16 of the box.
+//! point at such a p are not, however small, down to 1e-16 of the box.
 //!
 //! - `condition`: what holds at an optimum: multiple roots, ties, vanishing gradients
 //! - `descend`: direct search on a function with kinks and cusps
 //! - `found`: what the search finds: optima, regions
-//! - `general`: any system with one delay over a plane of one of its parameters and the delay, or of
-//!   two of its parameters
+//! - `general`: any system with one delay over a plane of one of its parameters and the delay, or
+//!   of two of its parameters
 //! - `letter`: the controlled oscillator over a plane of one of its gains and the delay
 //! - `polish`: Newton's method on those conditions, and the certificate
 //! - `regions`: the stable regions of a box: lobes

@@ -1,5 +1,5 @@
-//! What is searched: an equation over a box of two parameters p and q, everything else fixed. One of
-//! them may be the delay.
+//! What is searched: an equation over a box of two parameters p and q, everything else fixed. One
+//! of them may be the delay.
 
 use num_complex::Complex64;
 

@@ -7,11 +7,14 @@
 //!
 //! Both sides are of the form Z e^(−λt)(1 − r E).
 
+use num_complex::Complex64;
+
 use super::composition::Composition;
 use super::latency::beyond_zeros;
 use super::parts::{Decay, FeedbackForm};
 use super::polynomial::Polynomial;
 use super::system::{Class, System};
+use super::zeros::Zeros;
 use crate::model::elementary::exp;
 
 /// One side of a loop, Z e^(−λt)(1 − r E).
@@ -26,6 +29,12 @@ pub(in crate::linear) struct LoopSide {
 }
 
 impl LoopSide {
+    /// The zeros of Z, approximately; those that are not known at all are left out.
+    pub(in crate::linear) fn zeros(&self) -> Vec<Complex64> {
+        let zeros = Zeros::of(&self.polynomial.without_open_leading());
+        zeros.discs().iter().map(|disc| disc.centre).collect()
+    }
+
     /// This side without its zeros at λ = 0, each for certain or within rounding, and how many they
     /// are.
     fn without_origin(mut self) -> (Self, usize) {

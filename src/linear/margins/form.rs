@@ -194,10 +194,15 @@ impl RealFunction for Form {
         let both_slope = v.slope * u.value.conj() + v.value * u.slope.conj();
         let sizes = [&u, &v].map(|of| [norm(of.value), norm(of.slope)]);
         let [[u_size, u_slope], [v_size, v_slope]] = sizes;
-        let [[ue, use_], [ve, vse]] = [u.errors, v.errors];
+        let [[u_off, u_slope_off], [v_off, v_slope_off]] = [u.errors, v.errors];
         let both_errors = [
-            u_size * ve + v_size * ue + ue * ve,
-            u_size * vse + v_slope * ue + v_size * use_ + u_slope * ve + ue * vse + ve * use_,
+            u_size * v_off + v_size * u_off + u_off * v_off,
+            u_size * v_slope_off
+                + v_slope * u_off
+                + v_size * u_slope_off
+                + u_slope * v_off
+                + u_off * v_slope_off
+                + v_off * u_slope_off,
         ];
         let both_sizes = [u_size * v_size, v_slope * u_size + v_size * u_slope];
         let (own, own_errors, own_sizes) = square(&u);

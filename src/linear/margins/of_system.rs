@@ -9,13 +9,17 @@
 //! on λ = σ + iω. ω = 0 is among the zeros: there a real root passes the line. A neutral system of
 //! P and Q loses its stability at the latest where |k q_n/p_n| e^(−στ) = 1.
 
+use num_complex::Complex64;
+
 use super::form::{Form, Sides};
 use super::gain::{GainLoop, MOST_GAINS};
 use super::sum::Part;
 use super::turns::{PhaseMargin, omega_at};
 use crate::linear::MarginalTolerance;
 use crate::linear::general::{Class, DelayLine, RightOf, RootCounter, System, without_idle_zeros};
+use crate::linear::newton::divide;
 use crate::linear::real_zeros::zeros;
+use crate::model::elementary::norm;
 use crate::model::stop::Stop;
 
 /// How much the factor of a crossing may differ from 1 for the crossing of a system that is on the
@@ -117,6 +121,27 @@ impl SystemLoop {
             true => f64::INFINITY,
             false => MOST_GAINS,
         }
+    }
+
+    /// The loop L = V/U at λ = σ + iω, ω > 0.
+    #[must_use]
+    pub fn value(&self, omega: f64) -> Complex64 {
+        let [own, fed] = self.sides.at(omega * self.unit);
+        divide(fed, own)
+    }
+
+    /// Frequencies at which L changes: the sizes of the zeros of the polynomials of U and V but 0,
+    /// 1/τ, and that beyond which |L| < 1.
+    #[must_use]
+    pub fn frequencies(&self) -> Vec<f64> {
+        let sides = self.system.loop_sides(self.tau).into_iter().flatten();
+        let zeros = sides.flat_map(|side| side.zeros());
+        let mut all: Vec<f64> = zeros
+            .map(norm)
+            .chain([1.0 / self.tau, self.within(1.0)])
+            .collect();
+        all.retain(|omega| *omega > 0.0 && omega.is_finite());
+        all.iter().map(|omega| omega / self.unit).collect()
     }
 
     /// Whether no delay and no latency acts.

@@ -29,7 +29,9 @@
 //! - `compared`: shares of starts that reach sliding, by two methods of control
 //! - `error`: why a picture could not be drawn
 //! - `heat`: heat maps of a field
+//! - `inputs`: what a setting is, among the notes of its picture
 //! - `kinds`: boundaries other than pairs of roots on the axis
+//! - `loops`: the loop of a point: in the complex plane, and over the frequency
 //! - `line`: fields along the only remaining axis: one at several values of another axis, or
 //!   several together
 //! - `pdf`: from SVG to PDF; the only file that imports svg2pdf
@@ -63,6 +65,7 @@ mod fitted;
 mod font;
 mod hatch;
 mod heat;
+mod inputs;
 mod inset;
 mod key;
 mod kinds;
@@ -70,6 +73,7 @@ mod label;
 mod legend;
 mod letters;
 mod line;
+mod loops;
 mod near_curves;
 mod off_scale;
 mod options;
@@ -119,6 +123,7 @@ use file::{Format, Origin};
 pub use file::{Picture, is_name, named_in};
 #[cfg(feature = "fit")]
 pub use fit::FitPicture;
+pub use loops::{LoopKind, LoopPicture};
 pub use options::{Named, PictureKind, PictureOptions};
 pub use print::Print;
 pub use response::ResponsePicture;
@@ -209,6 +214,21 @@ pub fn draw_response(picture: &ResponsePicture, path: &Path) -> Result<Picture, 
     response::draw(picture, &mut scene);
     let origin = Origin {
         of: "the response of a system in time".to_owned(),
+        named: "",
+    };
+    Picture::of(&scene, format, path, origin)
+}
+
+/// Draws the loop of a point for the file `path`, as [`draw`] does a map.
+///
+/// # Errors
+/// When the name of the file is not that of a picture.
+pub fn draw_loop(picture: &LoopPicture, path: &Path) -> Result<Picture, PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    loops::draw(picture, &mut scene);
+    let origin = Origin {
+        of: "the loop of a point".to_owned(),
         named: "",
     };
     Picture::of(&scene, format, path, origin)

@@ -1,19 +1,21 @@
 //! A point of parameter space: its characteristic roots in the complex plane, and the number of
 //! unstable roots over the delay.
 
+use super::inputs::{inputs, title_of};
 use super::legend::{Legend, Swatch};
 use super::page::{self, Area};
 use super::panels::Panel;
 use super::scene::Scene;
 use super::stack::{Row, Stack};
-use super::text::{Rich, assignment, number, suffix};
+use super::text::{Rich, number, suffix};
 use super::value_scale;
 use crate::explore::along_delay::AlongDelay;
-use crate::explore::point::BlockPoint;
+use crate::explore::stability::Stability;
 use crate::meaning::colour::{self, INK, Rgb, SOFT_INK, STABLE, UNSTABLE};
 use crate::meaning::scale::Scale;
-use crate::setting::Parameter;
+use crate::report::numbers::counted;
 use crate::setting::units::Units;
+use crate::setting::{Parameter, Setting};
 use crate::text::finite;
 
 /// Share of the width for the complex plane.
@@ -35,17 +37,21 @@ const FLAT: f64 = 1e-9;
 /// The data of a picture of a point.
 #[derive(Debug, Clone, Copy)]
 pub struct PointPicture<'p> {
-    /// The point, with the roots to draw.
-    pub point: &'p BlockPoint,
-    /// Its line of delays.
-    pub along: &'p AlongDelay,
-    /// The units of both.
+    /// Its setting.
+    pub setting: &'p Setting,
+    /// Its stability, with the roots to draw.
+    pub stability: &'p Stability,
+    /// Its line of delays; none where that is not known.
+    pub along: Option<&'p AlongDelay>,
+    /// The units of all.
     pub units: &'p Units,
 }
 
 /// Draws a point.
 pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
-    let body = page::head(scene, "Characteristic roots of sliding", &notes(picture));
+    let words = ("Characteristic roots of sliding", "characteristic roots");
+    let title = title_of(picture.setting, words);
+    let body = page::head(scene, &title, &notes(picture));
     let u = scene.unit();
     let middle = body.left + PLANE * body.width();
     let plane = Area {
@@ -62,10 +68,16 @@ pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
         bottom: body.bottom - legend.height(u) - 20.0 * u,
         ..beside
     };
-    draw_counts(picture, over_delay, scene);
+    let top = match picture.along {
+        Some(along) => {
+            draw_counts(picture, along, over_delay, scene);
+            over_delay.bottom + 20.0 * u
+        }
+        None => beside.top + 20.0 * u,
+    };
     let column = Area {
         left: beside.left + 60.0 * u,
-        top: over_delay.bottom + 20.0 * u,
+        top,
         ..beside
     };
     legend.draw(scene, column);
@@ -73,37 +85,36 @@ pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
 
 /// The setting, its roots and stable delays.
 fn notes(picture: &PointPicture) -> Vec<Rich> {
-    let PointPicture { point, units, .. } = picture;
-    let given = [
-        (Parameter::MuPrime, point.mu_prime),
-        (Parameter::AlphaV, point.alpha_v),
-        (Parameter::AlphaN, point.alpha_n),
-        (Parameter::Tau, point.tau),
-    ];
-    let mut notes: Vec<Rich> = given
-        .into_iter()
-        .map(|(parameter, value)| assignment(parameter, value, &units.of_parameter(parameter)))
-        .collect();
-    notes.push(Rich::plain(&verdict(point)));
-    if let Some(abscissa) = finite(point.stability.spectrum.abscissa) {
+    let PointPicture {
+        setting,
+        stability,
+        units,
+        ..
+    } = picture;
+    let mut notes = inputs(setting, units);
+    notes.push(Rich::plain(&verdict(setting, stability)));
+    if let Some(abscissa) = finite(stability.spectrum.abscissa) {
         let rate = suffix(&units.rate(), " ", "");
         notes.push(Rich::plain(&format!(
             "spectral abscissa {}{rate}",
             number(abscissa)
         )));
     }
-    if !point.stability.spectrum.certified {
+    if !stability.spectrum.certified {
         notes.push(Rich::plain("the roots are not certified"));
     }
     notes
 }
 
-fn verdict(point: &BlockPoint) -> String {
-    let stability = &point.stability;
+fn verdict(setting: &Setting, stability: &Stability) -> String {
+    let what = match setting.system() {
+        None => "sliding is ",
+        Some(_) => "",
+    };
     match (stability.marginal, stability.stable, stability.n_unstable) {
-        (true, ..) => "sliding is marginal".into(),
-        (_, true, _) => "sliding is stable".into(),
-        (.., Some(n)) => format!("sliding is unstable: {n} roots"),
+        (true, ..) => format!("{what}marginal"),
+        (_, true, _) => format!("{what}stable"),
+        (.., Some(n)) => format!("{what}unstable: {}", counted(n, "root")),
         (.., None) => stability.reason.unwrap_or("not known").into(),
     }
 }
@@ -111,7 +122,7 @@ fn verdict(point: &BlockPoint) -> String {
 /// The complex plane.
 fn draw_plane(picture: &PointPicture, area: Area, scene: &mut Scene) {
     let (u, units) = (scene.unit(), picture.units);
-    let spectrum = &picture.point.stability.spectrum;
+    let spectrum = &picture.stability.spectrum;
     let (x, y) = scales(&spectrum.roots);
     let unit = |unit: &str| suffix(unit, "  (", ")");
     let title = format!("Im λ{}", unit(&units.angular_frequency()));
@@ -193,8 +204,8 @@ fn scales(roots: &[[f64; 2]]) -> (Scale, Scale) {
 }
 
 /// The number of unstable roots over the delay.
-fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
-    let PointPicture { along, point, .. } = picture;
+fn draw_counts(picture: &PointPicture, along: &AlongDelay, area: Area, scene: &mut Scene) {
+    let tau = picture.setting.get(Parameter::Tau);
     let u = scene.unit();
     let most = along.steps.iter().map(|step| step.2).max().unwrap_or(0);
     let high = (most as f64).max(2.0);
@@ -216,7 +227,7 @@ fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
         scene.rect((from, top), (to, bottom), stable_delays());
     }
     stack.draw_grid(scene);
-    let x = panel.across(point.tau);
+    let x = panel.across(tau);
     let line = [(x, panel.area.bottom), (x, panel.area.top)];
     scene.dashed(&line, INK, MARK_WIDTH * u, DASH);
     let stairs = along.steps.iter().flat_map(|&(from, to, n)| {
@@ -224,8 +235,8 @@ fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
         [panel.at(from, n), panel.at(to, n)]
     });
     scene.path(stairs.collect(), colour::of_line(1, 3), WIDTH * u);
-    if let Some(n) = point.stability.n_unstable {
-        scene.dot(panel.at(point.tau, n as f64), INK, DOT * u);
+    if let Some(n) = picture.stability.n_unstable {
+        scene.dot(panel.at(tau, n as f64), INK, DOT * u);
     }
     stack.draw_axes(scene);
 }
@@ -235,10 +246,12 @@ fn stable_delays() -> Rgb {
 }
 
 fn legend(picture: &PointPicture) -> Legend {
-    let PointPicture { point, along, .. } = picture;
+    let PointPicture {
+        stability, along, ..
+    } = picture;
     let mut entries = Vec::new();
     let mut entry = |swatch, text: &str| entries.push((swatch, Rich::plain(text)));
-    let roots = &point.stability.spectrum.roots;
+    let roots = &stability.spectrum.roots;
     if let Some([re, im]) = roots.first() {
         let words = ["rightmost root", "rightmost roots"][both(*im).len() - 1];
         entry(Swatch::Ring(colour_of_root(*re), RING, HOLE, DOT), words);
@@ -248,14 +261,16 @@ fn legend(picture: &PointPicture) -> Legend {
         let text = format!("the next ones, {} in all", number_of(roots));
         entry(Swatch::Dot(last, DOT), &text);
     }
-    if point.stability.spectrum.certified_line.is_finite() {
+    if stability.spectrum.certified_line.is_finite() {
         let line = Swatch::Dashed(SOFT_INK, 0.7 * MARK_WIDTH, DASH);
         entry(line, "no root is right of it, certified");
     }
     entry(Swatch::Box(half_plane()), "unstable half-plane");
-    entry(Swatch::Box(stable_delays()), stable_words(along));
-    let here = Swatch::Dashed(INK, MARK_WIDTH, DASH);
-    entry(here, "the delay of the roots");
+    if let Some(along) = along {
+        entry(Swatch::Box(stable_delays()), stable_words(along));
+        let here = Swatch::Dashed(INK, MARK_WIDTH, DASH);
+        entry(here, "the delay of the roots");
+    }
     Legend {
         heading: Vec::new(),
         entries,

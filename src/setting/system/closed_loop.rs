@@ -305,6 +305,11 @@ impl ClosedLoop {
         Ok(())
     }
 
+    /// Whether the controller is a PID one, whose parts have no poles where their gains are 0.
+    pub(super) fn has_pid(&self) -> bool {
+        matches!(self.controller, Controller::Pid(_))
+    }
+
     /// Everything in it that is evaluated.
     pub(super) fn tapes(&self) -> impl Iterator<Item = &Tape> {
         let of_controller: Vec<&Expression> = match &self.controller {

@@ -180,6 +180,13 @@ impl SystemModel {
         }
     }
 
+    /// Whether parts of it vanish, with their poles, where a parameter is exactly 0: gains of a PID
+    /// controller.
+    #[must_use]
+    pub(crate) fn drops_parts(&self) -> bool {
+        matches!(&self.form, Form::Loop(of) if of.has_pid())
+    }
+
     /// The polynomials and matrices as written, with their names.
     pub(crate) fn expressions(&self) -> Vec<(&'static str, Cow<'_, str>)> {
         if let Form::Matrices(of) = &self.form {

@@ -83,9 +83,9 @@ pub(super) const MISFITS: &[(&str, Option<&str>, &str)] = &[
         "plant: exp of what has s in it",
     ),
     (
-        "plant = \"1/s^9\"\ncontroller = \"1/s^8\"",
-        Some("\"1/s^9\""),
-        "a loop of degree 17: at most 16",
+        "plant = \"1/s^17\"\ncontroller = \"1/s^16\"",
+        Some("\"1/s^17\""),
+        "a loop of degree 33: at most 32",
     ),
     (
         "plant = \"1/s\"\npid = { k_p = \"s\" }",
@@ -109,9 +109,9 @@ pub(super) const MISFITS: &[(&str, Option<&str>, &str)] = &[
         "not both",
     ),
     (
-        "P = \"1/(s^2 + 1)^5 + s\"\nQ = \"1/(s^2 + 2)^4\"",
-        Some("\"1/(s^2 + 1)^5 + s\""),
-        "a polynomial of degree 19 in s once divisors are multiplied out",
+        "P = \"1/(s^2 + 1)^10 + s\"\nQ = \"1/(s^2 + 2)^8\"",
+        Some("\"1/(s^2 + 1)^10 + s\""),
+        "a polynomial of degree 37 in s once divisors are multiplied out",
     ),
     (
         "B = \"s\"\nA = \"s/(s + 1)*s\"",
