@@ -40,6 +40,7 @@ mod own_systems;
 mod pictures;
 mod point_plot;
 mod progress;
+mod published_loops;
 #[cfg(target_os = "linux")]
 mod queue;
 mod reproduce;
