@@ -60,13 +60,18 @@ impl StartArgs {
 
     /// Whether one of the flags is given.
     pub(super) fn any(&self) -> bool {
+        self.any_but_until() || self.times.until.is_some()
+    }
+
+    /// Whether a flag besides `--until` is given.
+    fn any_but_until(&self) -> bool {
         let TimeArgs {
             switch_on,
-            until,
+            until: _,
             seed,
             programme,
         } = &self.times;
-        let times = switch_on.is_some() || until.is_some() || seed.is_some();
+        let times = switch_on.is_some() || seed.is_some();
         !self.state.is_empty() || times || !programme.is_empty()
     }
 
@@ -75,15 +80,8 @@ impl StartArgs {
     /// # Errors
     /// When another one is given, or the end is outside its range.
     pub(super) fn of_response(&self, units: &Units) -> Result<Option<f64>, Failure> {
-        let TimeArgs {
-            switch_on,
-            until,
-            seed,
-            programme,
-        } = &self.times;
-        let others = switch_on.is_some() || seed.is_some() || !programme.is_empty();
-        alone("--system", others || !self.state.is_empty())?;
-        let Some(until) = until else {
+        alone("--system", self.any_but_until())?;
+        let Some(until) = &self.times.until else {
             return Ok(None);
         };
         let end = in_units("--until", until, units)?;

@@ -63,7 +63,8 @@ impl SystemLoop {
         Self::on_line(system, tau, 0.0)
     }
 
-    /// The same on the line Re λ = `line`.
+    /// The loop of `system` at the delay `tau` on the line Re λ = `line`; none as for
+    /// [`SystemLoop::new`].
     pub(crate) fn on_line(system: &System, tau: f64, line: f64) -> Option<Self> {
         if matches!(system.class(), Class::DegreeUnknown | Class::Refused) {
             return None;
@@ -95,7 +96,7 @@ impl SystemLoop {
         })
     }
 
-    /// The same loop; once `stop` is set, margins are told soon, and mean nothing.
+    /// This loop; once `stop` is set, its margins are told soon, and mean nothing.
     #[must_use]
     pub fn heeding(mut self, stop: &Stop) -> Self {
         self.stop = stop.clone();

@@ -20,12 +20,13 @@ pub struct PhaseMargin {
 }
 
 impl PhaseMargin {
-    /// Where |L| is 1 nowhere.
+    /// A margin of a loop of which |L| is 1 nowhere.
     pub(crate) const ENDLESS: Self = Self {
         angle: f64::INFINITY,
         omega: f64::NAN,
     };
 
+    /// A margin that is not known.
     pub(crate) const UNKNOWN: Self = Self {
         angle: f64::NAN,
         omega: f64::NAN,

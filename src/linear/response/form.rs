@@ -72,7 +72,7 @@ impl Excited {
     /// What a disturbance of the state leaves of P and Q, as [`Excited::by_start_of_powers`].
     ///
     /// # Errors
-    /// As there, and with a latency.
+    /// As [`Excited::by_start_of_powers`], and with a latency.
     pub fn by_start(system: &System, tau: f64) -> Result<Self, NoResponse> {
         Self::by_start_of_powers(&powers(system)?, tau)
     }
